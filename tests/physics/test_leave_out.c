@@ -79,8 +79,9 @@ TEST(method_gets_what_it_needs_and_no_more) {
                                                : !!host->linear.factors);
         ck_assert((needs & CS_NEED_SOLVE) == 0 ? !host->setup_x : !!host->setup_x);
         ck_assert(rows[CS_FEATURE_SOLVER].built == !!(needs & CS_NEED_SOLVE));
-        /* the solver's vectors, its two numbers a spring, and the positions it was made for */
-        const size_t numbers = 2 * (size_t)cloth.system->springs.n + (16 + 3) * cloth.n;
+        /* the solver's vectors, the positions it was made for, and four numbers a spring: those
+         * of a direction lie as the particles do, and eight apart */
+        const size_t numbers = 6 * 4 * ((size_t)cloth.n + 8) + (16 + 3) * (size_t)cloth.n;
         ck_assert_uint_eq(cloth.session.run.plan.rows[CS_FEATURE_SOLVER].bytes,
                           needs & CS_NEED_SOLVE ? numbers * sizeof(double) : 0);
         ck_assert(rows[CS_FEATURE_SPRING_LIST].built == !!(needs & CS_NEED_SPRINGS));

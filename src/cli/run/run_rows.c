@@ -2,6 +2,7 @@
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,10 +60,9 @@ static enum cs_status begin_rows(struct cs_job *job, struct cs_error *error) {
         return CS_OK;
     const int output = dup(STDOUT_FILENO);
     FILE *file = output < 0 ? NULL : fdopen(output, "wb");
-    if (!file) {
-        close(output);
-        return refuse_output(error);
-    }
+    if (!file) // the program ends, and its descriptors with it
+        return cs_fail(error, CS_ERR_FILE, "cannot write to standard output: %s",
+                       strerror(errno));
     job->trace.trace.ctx = file;
     cs_trace_stream_begin(file);
     write_state(job);
