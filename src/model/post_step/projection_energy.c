@@ -198,37 +198,39 @@ static void apply_elastic_response(struct cs_projection_energy *energy,
         }
 }
 
-/* Fractions of a correction: of displacements, and of the velocities that belong to them. */
-struct share {
-    /* of displacements (way), and of the velocities that belong to them (speed) */
-    double way, speed;
-};
-
-/* Applies fractions of the correction to the state after the step, and returns its energy.
- * Pushed particles have their new velocity in any case. */
-static struct cs_energy_with_scale try_share(struct cs_projection_energy *energy,
-                                             const struct cs_projection_step *step,
-                                             struct share share) {
-    const size_t n = energy->system->view.n;
-    const double *way = energy->work, speed = share.speed * energy->velocity_per_push;
-    cs_vector_kernels.linear_sum(3 * n, 1, step->x, share.way, way, step->corrected);
-    for (size_t c = 0; c < 3; c++)
-        for (size_t i = 0; i < n; i++)
-            if (!step->is_pushed[i])
-                step->corrected[(3 + c) * n + i] = step->v[c * n + i] + speed * way[c * n + i];
-    return energy_after(energy, step);
+/* Applies a fraction of the displacements to the state after the step. */
+static void set_way(const struct cs_projection_energy *energy,
+                    const struct cs_projection_step *step, double fraction) {
+    const size_t n3 = 3 * (size_t)energy->system->view.n;
+    cs_vector_kernels.linear_sum(n3, 1, step->x, fraction, energy->work, step->corrected);
 }
 
-/* Bisects *part, one of the fractions in *share, for the largest value within the limit. */
+/* The same of the velocities that belong to them. Pushed particles have their new velocity in
+ * any case. */
+static void set_speed(const struct cs_projection_energy *energy,
+                      const struct cs_projection_step *step, double fraction) {
+    const size_t n = energy->system->view.n;
+    const double speed = fraction * energy->velocity_per_push;
+    for (size_t c = 0, k = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++, k++)
+            if (!step->is_pushed[i])
+                step->corrected[3 * n + k] = step->v[k] + speed * energy->work[k];
+}
+
+typedef void set_fraction(const struct cs_projection_energy *energy,
+                          const struct cs_projection_step *step, double fraction);
+
+/* Bisects for the largest fraction within the limit, and sets it. */
 static void bisect_fraction(struct cs_projection_energy *energy,
                             const struct cs_projection_step *step, double allowed,
-                            struct share *share, double *part) {
+                            set_fraction *set) {
     double low = 0, high = 1;
     for (int k = 0; k < HALVINGS; k++) {
-        *part = (low + high) / 2;
-        *(try_share(energy, step, *share).total <= allowed ? &low : &high) = *part;
+        const double middle = (low + high) / 2;
+        set(energy, step, middle);
+        *(energy_after(energy, step).total <= allowed ? &low : &high) = middle;
     }
-    *part = low;
+    set(energy, step, low);
 }
 
 /* Applies the correction all the way to the particles that a shorter one leaves deep. */
@@ -257,12 +259,12 @@ static struct cs_energy_with_scale shorten(struct cs_projection_energy *energy,
                                            const struct cs_projection_step *step,
                                            double allowed) {
     const size_t n = energy->system->view.n;
-    struct share share = {0, 1};
     cs_vector_kernels.linear_sum(3 * n, 1, step->corrected, -1, step->x, energy->work);
-    if (try_share(energy, step, share).total > allowed)
-        bisect_fraction(energy, step, allowed, &share, &share.speed);
-    bisect_fraction(energy, step, allowed, &share, &share.way);
-    try_share(energy, step, share);
+    set_way(energy, step, 0);
+    set_speed(energy, step, 1);
+    if (energy_after(energy, step).total > allowed)
+        bisect_fraction(energy, step, allowed, set_speed);
+    bisect_fraction(energy, step, allowed, set_way);
     lift_deep(energy, step);
     return energy_after(energy, step);
 }
