@@ -264,7 +264,8 @@ TEST(own_blocks_of_the_factors_are_those_of_the_product) {
     }
 }
 
-/* w stored, or found from x as in large grids: products and diagonals are equal to the bit */
+/* w stored, or found from x as in large grids: products and diagonals are equal to the bit, and
+ * no factor that they need is left out */
 TEST(products_with_w_stored_and_found_are_equal) {
     for (size_t g = 0; g < N_GRIDS; g++) {
         struct sheet sheet;
@@ -278,12 +279,16 @@ TEST(products_with_w_stored_and_found_are_equal) {
             made[k] = calloc(n, 9 * sizeof *made[k]);
             for (uint32_t r = 0; r < springs->n_runs; r++)
                 ((struct cs_spring_run *)springs->runs)[r].factor_rows = k ? 2 : 4;
+            for (size_t i = 0; i < springs->n_factors; i++)
+                factors[i] = (double)NAN;
             cs_springs_factor(springs, n, &matrix, factors);
             cs_springs_mul_add(springs, n, factors, sheet.x, sheet.v, made[k]);
             cs_springs_factor_diagonal(springs, n, factors, sheet.x, made[k] + 3 * sheet.n);
         }
         ck_assert_mem_eq(made[0], made[1], 9 * sheet.n * sizeof *made[0]);
         ck_assert(n < 3 || made[0][3 * sheet.n] > 0);
+        for (size_t i = 0; i < 9 * sheet.n; i++)
+            ck_assert_double_finite(made[0][i]);
         free(made[0]), free(made[1]), free(factors);
         sheet_close(&sheet);
     }

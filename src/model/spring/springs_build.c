@@ -40,7 +40,17 @@ void cs_springs_stiffen(struct cs_spring_run *run, const struct cs_body *body) {
  * the time. Larger ones are bound by memory. */
 enum { STORED_MAX = 8192 };
 
-/* Packed grids have all rows of a direction one after another, as their particles lie. */
+/* Rows of a packed grid whose factors are found at a time: rows alone do not fill vectors. */
+enum { FACTORED_ROWS = 8 };
+
+/* Springs of a packed grid of `all` particles from `begin` on. */
+static uint32_t n_factored_of(const struct cs_spring_run *run, uint32_t begin, uint32_t all) {
+    const uint32_t most = FACTORED_ROWS * run->columns, left = begin + all - run->first_b;
+    return (run->row - begin) % most ? 0 : left < most ? left : most;
+}
+
+/* Packed grids have all rows of a direction one after another, as their particles lie. What
+ * would be a spring over the end of a row has numbers too, which nothing reads. */
 size_t cs_springs_order_factors(struct cs_spring_run *runs, uint32_t n_runs, size_t begin) {
     const struct cs_spring_run *first = runs;
     size_t grid = begin;
@@ -56,6 +66,7 @@ size_t cs_springs_order_factors(struct cs_spring_run *runs, uint32_t n_runs, siz
         run->factors =
             packed ? grid + run->direction * numbers + run->first_a - first->row : begin;
         begin = packed ? grid + CS_DIRECTIONS * numbers : begin + numbers;
+        run->n_factored = packed ? n_factored_of(run, first->row, all) : run->count;
     }
     return begin;
 }

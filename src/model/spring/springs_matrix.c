@@ -237,7 +237,8 @@ CS_INLINE void factor_springs(const struct factoring *made, const struct cs_spri
     struct gather_buffer places;
     double *base = made->factors + run->factors;
     for (uint32_t start = begin; start < end; start += PIECE) {
-        const struct piece piece = piece_of(run, start);
+        struct piece piece = piece_of(run, start);
+        piece.count = end - start < PIECE ? end - start : PIECE;
         const struct ends e = ends_of(&piece, made->matrix->x, made->n, false, &places);
         if (run->ends)
             factor_of(&piece, e, made->matrix, true, true, base);
@@ -252,7 +253,7 @@ CS_CLONES static void factor_runs(void *arg, uint32_t block) {
     const struct cs_springs *springs = made->springs;
     for (uint32_t r = RUNS * block; r < springs->n_runs && r < RUNS * (block + 1); r++)
         if (!springs->slots || !springs->runs[r].ends)
-            factor_springs(made, springs->runs + r, 0, springs->runs[r].count);
+            factor_springs(made, springs->runs + r, 0, springs->runs[r].n_factored);
 }
 
 /* Factors of one chunk of a mesh's run. */
