@@ -15,7 +15,7 @@ awk '
     BEGIN {
         n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
             " model/contact/narrow_phase model/contact/ccd model/solver,model/event model/post_step model" \
-            " scene/file io,draw,sim io/export draw/gl,draw/cpu,draw/cairo session study study/reference" \
+            " scene/file io,draw,sim,diagram io/export draw/gl,draw/cpu,diagram/cairo session study study/reference" \
             " study/compare cli/line cli/show cli cli/run sweep,borders shared advise,bisect,conform,describe,files,film,golden,integrators,new,reproduce,soft,stability", floors, " ")
         for (i = 1; i <= n; i++) {
             count_of = split(floors[i], folders, ",")
@@ -25,7 +25,7 @@ awk '
     # who sees base, and of all other rooms of src below it session alone, but for these doors
     BEGIN {
         inner = "^(mesh|scene|model|sim|io|draw)(/|$)"
-        split("draw/camera_fit.h draw/diagram.h draw/glyph.h draw/srgb.h io/checkpoint.h" \
+        split("draw/camera_fit.h draw/glyph.h draw/srgb.h io/checkpoint.h" \
             " io/export/export.h io/file_conflicts.h io/frame_writer.h io/npy.h io/png.h io/row_log.h" \
             " model/contact/barrier_law.h scene/file/json.h scene/file/mesh_read.h scene/mesh_keys.h", doors, " ")
         for (i in doors) door[doors[i]]

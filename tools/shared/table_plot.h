@@ -4,7 +4,7 @@
 #define CS_TABLE_PLOT_H
 
 #include "base/table.h"
-#include "draw/diagram.h"
+#include "diagram/diagram.h"
 
 enum { CS_TABLE_COLUMNS = 128 };
 

@@ -10,7 +10,7 @@
 #include "base/image.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "draw/diagram.h"
+#include "diagram/diagram.h"
 #include "draw/srgb.h"
 
 enum cs_screen_colours { CS_SCREEN_PLAIN, CS_SCREEN_256, CS_SCREEN_24_BIT };

@@ -9,7 +9,7 @@
 #ifndef CS_COMPARE_CURVES_H
 #define CS_COMPARE_CURVES_H
 
-#include "draw/diagram.h"
+#include "diagram/diagram.h"
 #include "study/compare/compare_cell.h"
 
 enum { CS_CURVES_DRAWN = CS_STYLES, CS_CURVES_MAX = 256 };

@@ -2,7 +2,7 @@
  *
  *   surface -> title -> panels, row by row: boxes, grid, series, names at the right -> keys
  * Lengths are in points at print size. A first pass on an empty surface finds the height. */
-#include "draw/cairo/cairo_marks.h"
+#include "diagram/cairo/cairo_marks.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef CS_CAIRO_MARKS_H
 #define CS_CAIRO_MARKS_H
 
-#include "draw/diagram.h"
+#include "diagram/diagram.h"
 
 #include <cairo.h>
 #include <math.h>

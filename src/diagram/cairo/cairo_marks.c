@@ -1,5 +1,5 @@
 /* Draws ink, text and marks, and gathers their titles. */
-#include "draw/cairo/cairo_marks.h"
+#include "diagram/cairo/cairo_marks.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>

@@ -1,5 +1,5 @@
 /* Axes, ticks, styles and keys of diagrams: the part that all their drawers share. */
-#include "draw/diagram.h"
+#include "diagram/diagram.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
  *   -> cs_diagram_write: PNG, SVG and PDF by the module diagram-cairo.so, loaded here
  *   -> cs_screen_print_diagram: characters
  * Texts are data: no character of them has a meaning. */
-#ifndef CS_DRAW_DIAGRAM_H
-#define CS_DRAW_DIAGRAM_H
+#ifndef CS_DIAGRAM_H
+#define CS_DIAGRAM_H
 
 #include "base/arena.h"
 #include "base/text.h"
