@@ -5,9 +5,9 @@
 #include "base/install_paths.h"
 #include "cli/commands.h"
 #include "cli/line/print.h"
-#include "io/export/export.h"
+#include "export/export.h"
 #include "io/file_conflicts.h"
-#include "io/npy.h"
+#include "export/npy.h"
 #include "session/process_pool.h"
 
 #include <dirent.h>

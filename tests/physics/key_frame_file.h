@@ -4,8 +4,9 @@
 
 #include "../suite.h"
 #include "base/serialise.h"
-#include "io/export/writer.h"
-#include "io/npy.h"
+#include "export/npy.h"
+#include "export/writer.h"
+#include "mesh/trimesh.h"
 
 #include <stdio.h>
 

@@ -4,7 +4,7 @@
 #include "../unit/unit.h"
 #include "base/file.h"
 #include "fixture.h"
-#include "io/export/export.h"
+#include "export/export.h"
 
 enum { SAMPLES = 4, ALL = CS_EXPORT_OBJ | CS_EXPORT_PC2 | CS_EXPORT_VTP | CS_EXPORT_NPZ };
 

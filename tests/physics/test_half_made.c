@@ -3,7 +3,7 @@
 #include "../unit/unit.h"
 #include "draw/render.h"
 #include "fixture.h"
-#include "io/export/export.h"
+#include "export/export.h"
 #include "scene/collider.h"
 
 static unsigned added;
@@ -19,7 +19,7 @@ static enum cs_status add(void *state, const struct cs_export_source *source,
  */
 static struct cs_export_writer bare = {.ending = "obj", .size = 1, .add = add};
 #define cs_export_obj bare
-#include "../../src/io/export/export.c"
+#include "../../src/export/export.c"
 #include "scene/collider_keys.h"
 
 #define SCENE "{\"bodies\": [{\"cloth\": {\"grid\": [4, 3]}, \"mass\": {\"total\": 0.2}}]}"

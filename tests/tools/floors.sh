@@ -6,7 +6,7 @@
 # includes another's header, or names what another's .c defines (a header may declare for several),
 # stands above it.
 # What opens a file to write it, renames or removes one, is base/file.c, which looks at the target.
-# Behind a wall, studies, commands, tools, bench and the tests of all these see session in place of
+# Behind a wall, exports, studies, commands, tools, bench and the tests of these see session in place of
 # the rooms below it. The tests of units, of physics and of bytes from outside may look behind it.
 # The host is known to sim alone, only a session begins a run, and only session_calls.c steps one.
 cd "$1" || exit 1
@@ -15,7 +15,7 @@ awk '
     BEGIN {
         n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
             " model/contact/narrow_phase model/contact/ccd model/solver,model/event model/post_step model" \
-            " scene/file io,draw,sim,diagram io/export draw/gl,draw/cpu,diagram/cairo session study study/reference" \
+            " scene/file io,draw,sim,diagram draw/gl,draw/cpu,diagram/cairo session export study study/reference" \
             " study/compare cli/line cli/show cli cli/run sweep,borders shared advise,bisect,conform,describe,files,film,golden,integrators,new,reproduce,soft,stability", floors, " ")
         for (i = 1; i <= n; i++) {
             count_of = split(floors[i], folders, ",")
@@ -26,7 +26,7 @@ awk '
     BEGIN {
         inner = "^(mesh|scene|model|sim|io|draw)(/|$)"
         split("draw/camera_fit.h draw/glyph.h draw/srgb.h io/checkpoint.h" \
-            " io/export/export.h io/file_conflicts.h io/frame_writer.h io/npy.h io/png.h io/row_log.h" \
+            " io/file_conflicts.h io/frame_writer.h io/png.h io/row_log.h" \
             " model/contact/barrier_law.h scene/file/json.h scene/file/mesh_read.h scene/mesh_keys.h", doors, " ")
         for (i in doors) door[doors[i]]
         measures["bench/kernels.c"] # single forces and products, each by itself
@@ -63,7 +63,7 @@ awk '
             connect(here, unit_of(quoted[2]), "includes " quoted[2])
         }
         if (quoted[2] ~ /^sim\/(run_)?host.h$/ && from != "sim") wrong(FILENAME " includes sim/host.h: see the doors in sim/run_state.h")
-        if ((FILENAME ~ /^tools/ || from ~ /^(study|cli)(\/|$)/) && to ~ inner && !(quoted[2] in door)) {
+        if ((FILENAME ~ /^tools/ || from ~ /^(export|study|cli)(\/|$)/) && to ~ inner && !(quoted[2] in door)) {
             wrong(FILENAME " includes " quoted[2] ": behind the wall, see src/session")
         }
         count++
@@ -90,7 +90,7 @@ awk '
         in_comment = sub(/\/\*.*/, "", line)
     }
     # what studies and commands read of a system, until it is opaque to them
-    from ~ /^(study|cli)/ {
+    from ~ /^(export|study|cli)/ {
         read = line
         gsub(/system(->|\.)(inv_mass|mass|plan|scene|state|view)([^a-z_]|$)/, "", read)
         if (match(read, /system(->|\.)[a-z_]+/)) wrong(FILENAME ":" FNR ": reads " substr(read, RSTART, RLENGTH) ": see src/session")

@@ -45,10 +45,10 @@ plant() {
 
 cc="$* -std=c17 -D_GNU_SOURCE -Iinclude -Isrc -fsyntax-only -Wall -Wextra -Wswitch-enum -Werror"
 shapes='scene/collider_keys.c model/contact/posed_collider.c'
-expect taken 'what is whole' $shapes draw/look.c io/export/export.c
+expect taken 'what is whole' $shapes draw/look.c export/export.c
 plant 'half a collider shape' scene/collider_keys.h 's/^    X(sphere, .*$/& X(torus, cs_torus, "a torus") \\/; s/\\ X(torus/X(torus/' $shapes
 plant 'half a look' scene/picture_keys.h 's/^    X(LIT, lit)/& X(DEPTH, depth)/' draw/look.c
-plant 'half an export format' io/export/writer.h 's/X(OBJ, obj)/& X(STL, stl)/' io/export/export.c
+plant 'half an export format' export/writer.h 's/X(OBJ, obj)/& X(STL, stl)/' export/export.c
 plant 'half a bound of shapes' scene/collider.h 's/^    CS_BOUNDS_BOX,/    CS_BOUNDS_TORUS, &/' model/contact/posed_collider.c
 plant 'half a colouring' draw/look.h 's/^    CS_COLOURS_FAINT,/    CS_COLOURS_DEPTH, &/' draw/look.c
 echo "1..$n"

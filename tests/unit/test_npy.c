@@ -1,6 +1,6 @@
 /* State files hold what NumPy expects, byte for byte. */
 #include "base/file.h"
-#include "io/npy.h"
+#include "export/npy.h"
 #include "unit.h"
 
 #include <signal.h>

@@ -4,7 +4,7 @@
 
 #include "base/options.h"
 #include "cli/line/print.h"
-#include "io/export/export.h"
+#include "export/export.h"
 #include "session/session.h"
 #include "study/compare/compare_cell.h"
 

@@ -7,7 +7,7 @@
 #include "base/serialise.h"
 #include "draw/glyph.h"
 #include "draw/srgb.h"
-#include "io/npy.h"
+#include "export/npy.h"
 #include "session/frame_picture.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/serialise.h"
 #include "golden/golden_states.h"
-#include "io/npy.h"
+#include "export/npy.h"
 
 #include <stdio.h>
 #include <stdlib.h>

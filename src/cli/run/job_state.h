@@ -7,7 +7,7 @@
 #include "cli/run/run_checkpoint.h"
 #include "cli/run_folder.h"
 #include "cli/show/screen.h"
-#include "io/export/export.h"
+#include "export/export.h"
 #include "io/frame_writer.h"
 #include "io/row_log.h"
 #include "session/frame_picture.h"

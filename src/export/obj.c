@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/serialise.h"
 #include "base/text.h"
-#include "io/export/writer.h"
+#include "export/writer.h"
 
 #include <math.h>
 #include <stdlib.h>

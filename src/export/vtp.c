@@ -9,7 +9,7 @@
 #include "base/file.h"
 #include "base/serialise.h"
 #include "base/text.h"
-#include "io/export/writer.h"
+#include "export/writer.h"
 
 /* Parts that the files of all samples have in common. */
 struct common {

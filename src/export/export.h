@@ -5,7 +5,7 @@
 #ifndef CS_EXPORT_H
 #define CS_EXPORT_H
 
-#include "io/export/writer.h"
+#include "export/writer.h"
 
 /* The formats, in the order of their bits. */
 extern const struct cs_export_writer *const cs_export_writers[CS_N_EXPORT_FORMATS];

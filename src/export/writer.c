@@ -1,5 +1,5 @@
 /* Files that grow in place, by pwrite at known offsets; interrupted calls go on. */
-#include "io/export/writer.h"
+#include "export/writer.h"
 
 #include <errno.h>
 #include <fcntl.h>

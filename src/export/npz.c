@@ -11,9 +11,8 @@
  * seams: stitches (S, 4) and stitch_weights (S, 4). */
 #include "base/file.h"
 #include "base/serialise.h"
-#include "io/export/writer.h"
-#include "io/npy.h"
-#include "model/system/seams.h"
+#include "export/npy.h"
+#include "export/writer.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -282,8 +281,8 @@ static enum cs_status finish_npz(void *state, const struct cs_export_source *sou
         return error->status;
     struct cs_zip zip = {.file = out.file};
     put_meshes(&zip, source->meshes);
-    if (source->seams)
-        put_stitches(&zip, source->seams);
+    if (source->meshes[0]->seams)
+        put_stitches(&zip, source->meshes[0]->seams);
     if (put_samples(npz, source->meshes, &zip, error)) {
         cs_file_abandon(&out);
         return error->status;

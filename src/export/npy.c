@@ -7,7 +7,7 @@
  *   10      118    Python dictionary, padded with blanks, ended by a newline
  *   128     ...    numbers
  * The dictionary is {'descr': TYPE, 'fortran_order': False, 'shape': (N, ...), }. */
-#include "io/npy.h"
+#include "export/npy.h"
 
 #include "base/file.h"
 #include "base/serialise.h"

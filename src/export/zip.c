@@ -17,7 +17,7 @@
  * All ones in a field mean that the Zip64 field holds the number. Dates are fixed, so equal
  * runs give equal archives.
  */
-#include "io/export/writer.h"
+#include "export/writer.h"
 
 #include "base/hash.h"
 

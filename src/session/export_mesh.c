@@ -1,9 +1,10 @@
 /* Joins the particles of all bodies to triangles and lines, and makes triangles of colliders. A
  * collider's triangles are made once in its own frame, then posed at every sample, where key
  * frames change its points. */
-#include "io/export/writer.h"
+#include "session/export_mesh.h"
 
 #include "base/serialise.h"
+#include "model/contact/posed_collider.h"
 #include "model/system/surfaces.h"
 #include "scene/collider_keys.h"
 
@@ -108,7 +109,8 @@ enum cs_status cs_export_mesh_of_bodies(struct cs_export_mesh *mesh,
                                     .item = "body",
                                     .n = system->view.n,
                                     .n_items = n_bodies,
-                                    .is_moving = true};
+                                    .is_moving = true,
+                                    .seams = system->seams};
     for (uint32_t b = 0; b < n_bodies; b++) {
         const struct cs_body_range *body = system->bodies + b;
         mesh->n_triangles += cs_faces_count(body);

@@ -1,8 +1,5 @@
 /* Hands every sample of a run to the writers of all requested formats. */
-#include "io/export/export.h"
-
-#include "model/force/diagnostics.h"
-#include "model/system/seams.h"
+#include "export/export.h"
 
 #include <string.h>
 
@@ -38,9 +35,9 @@ static enum cs_status add_fields(struct cs_export *export, struct cs_error *erro
         cs_export_mesh_add_field(bodies, names[1], 3, arena, error);
     if (values & CS_EXPORT_STRAIN)
         cs_export_mesh_add_field(bodies, names[2], 1, arena, error);
-    if (export->source.seams)
+    if (export->bodies.seams)
         cs_export_mesh_add_field(bodies, names[3], 1, arena, error);
-    if (values || export->source.seams) {
+    if (values || export->bodies.seams) {
         export->values = cs_arena_alloc_array(arena, bodies->n, sizeof *export->values, error);
         export->scratch =
             cs_arena_alloc_array(arena, bodies->n, 3 * sizeof *export->scratch, error);
@@ -60,7 +57,6 @@ enum cs_status cs_export_open(struct cs_export *export,
                               const struct cs_system *system, struct cs_error *error) {
     *export = (struct cs_export){.source = {.meshes = {&export->bodies, &export->colliders},
                                             .settings = *settings,
-                                            .seams = system->seams,
                                             .fps = system->scene->time.fps},
                                  .system = system,
                                  .n_samples = settings->n_samples_before};
@@ -104,8 +100,8 @@ static void measure_fields(struct cs_export *export, double t, const double *x,
         cs_diagnostics_particle_strain(export->system, x, export->values);
         cs_export_mesh_set(bodies, field++, export->values);
     }
-    if (export->source.seams && export->values) {
-        count_stitches(export->source.seams, bodies->n, export->values);
+    if (export->bodies.seams && export->values) {
+        count_stitches(export->bodies.seams, bodies->n, export->values);
         cs_export_mesh_set(bodies, field, export->values);
     }
     if (export->colliders.is_moving && export->colliders.n > 0)

@@ -12,7 +12,7 @@
  * The number of samples is written after their positions. A file that a crash cut off therefore
  * never promises a sample that it does not hold. */
 #include "base/serialise.h"
-#include "io/export/writer.h"
+#include "export/writer.h"
 
 /* The cache of bodies or of colliders; closed if they have none. */
 struct cache {
