@@ -3,7 +3,7 @@
 #include "timing.h"
 
 #include "base/clock.h"
-#include "io/png.h"
+#include "base/png.h"
 #include "session/frame_picture.h"
 #include "session/session.h"
 

@@ -4,8 +4,8 @@
  * each other only show in a system, as do the findings of session.h. */
 #include "base/json_writer.h"
 #include "cli/commands.h"
+#include "cli/file_conflicts.h"
 #include "cli/line/print.h"
-#include "io/file_conflicts.h"
 #include "session/session.h"
 
 #include <stdio.h>

@@ -4,9 +4,9 @@
 #include "base/file.h"
 #include "base/install_paths.h"
 #include "cli/commands.h"
+#include "cli/file_conflicts.h"
 #include "cli/line/print.h"
 #include "export/export.h"
-#include "io/file_conflicts.h"
 #include "export/npy.h"
 #include "session/process_pool.h"
 

@@ -7,10 +7,10 @@
 #define CS_FRAME_PICTURE_H
 
 #include "base/install_paths.h"
+#include "base/png.h"
 #include "base/worker_thread.h"
 #include "draw/look.h"
 #include "draw/render.h"
-#include "io/png.h"
 #include "scene/picture_keys.h"
 #include "sim/run_state.h"
 

@@ -1,7 +1,7 @@
 /* Any bytes as a checkpoint: refused, or all of its record is there. Once as they are, and once
  * with the checksum put right, since else hardly any damage gets behind it. */
 #include "base/hash.h"
-#include "io/checkpoint.h"
+#include "cli/run/checkpoint.h"
 
 #include <stdint.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Any chunks, a kind and a length and bytes each, in a picture: of those that a run wrote only
  * tEXt is read, and what it says is read as the provenance of a picture is. */
+#include "base/png.h"
 #include "folder.h"
-#include "io/png.h"
 #include "reproduce/provenance_read.h"
 
 #include <stdint.h>

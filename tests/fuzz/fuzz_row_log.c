@@ -1,8 +1,8 @@
 /* Any rows, a byte 0, and any bytes as the log of a killed run: it goes on after the rows of
  * its record where the file begins with them, and is refused elsewhere. */
 #include "base/file.h"
+#include "cli/run/row_log.h"
 #include "folder.h"
-#include "io/row_log.h"
 
 #include <stdint.h>
 

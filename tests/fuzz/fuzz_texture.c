@@ -1,6 +1,6 @@
 /* Any bytes as a texture: an image or a refusal. Once as they are, and once with the checksums
  * of the chunks put right, since else hardly any damage gets behind them. */
-#include "io/png.h"
+#include "base/png.h"
 
 #include <stdint.h>
 #include <stdlib.h>

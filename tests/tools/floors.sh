@@ -15,7 +15,7 @@ awk '
     BEGIN {
         n = split("base mesh scene model/spring model/system model/elastic model/force model/contact model/contact/broad_phase" \
             " model/contact/narrow_phase model/contact/ccd model/solver,model/event model/post_step model" \
-            " scene/file io,draw,sim,diagram draw/gl,draw/cpu,diagram/cairo session export study study/reference" \
+            " scene/file draw,sim,diagram draw/gl,draw/cpu,diagram/cairo session export study study/reference" \
             " study/compare cli/line cli/show cli cli/run sweep,borders shared advise,bisect,conform,describe,files,film,golden,integrators,new,reproduce,soft,stability", floors, " ")
         for (i = 1; i <= n; i++) {
             count_of = split(floors[i], folders, ",")
@@ -24,9 +24,8 @@ awk '
     }
     # who sees base, and of all other rooms of src below it session alone, but for these doors
     BEGIN {
-        inner = "^(mesh|scene|model|sim|io|draw)(/|$)"
-        split("draw/camera_fit.h draw/glyph.h draw/srgb.h io/checkpoint.h" \
-            " io/file_conflicts.h io/frame_writer.h io/png.h io/row_log.h" \
+        inner = "^(mesh|scene|model|sim|draw)(/|$)"
+        split("draw/camera_fit.h draw/glyph.h draw/srgb.h" \
             " model/contact/barrier_law.h scene/file/json.h scene/file/mesh_read.h scene/mesh_keys.h", doors, " ")
         for (i in doors) door[doors[i]]
         measures["bench/kernels.c"] # single forces and products, each by itself

@@ -1,6 +1,6 @@
 /* A checkpoint gives back what was recorded, and no damaged or foreign one is taken. */
 #include "base/file.h"
-#include "io/checkpoint.h"
+#include "cli/run/checkpoint.h"
 #include "unit.h"
 
 static const struct cs_checkpoint_key keys[] = {{"scene", "{\n  \"dt\": 0.001,\n  \"n\": 3\n}"},

@@ -1,5 +1,5 @@
 /* Frames are written in order, each with its own pixels, and a failure stops them. */
-#include "io/frame_writer.h"
+#include "cli/run/frame_writer.h"
 #include "unit.h"
 
 enum { WIDTH = 40, HEIGHT = 30 };

@@ -1,6 +1,6 @@
 /* Pictures come back as they were, carry their origin, and bad ones are refused. */
 #include "base/file.h"
-#include "io/png.h"
+#include "base/png.h"
 #include "unit.h"
 
 #include <signal.h>

@@ -1,6 +1,6 @@
 /* A log of rows goes on where a record was made, and not after other rows. */
 #include "base/file.h"
-#include "io/row_log.h"
+#include "cli/run/row_log.h"
 #include "unit.h"
 
 #include <fcntl.h>

@@ -1,10 +1,10 @@
 /* clothsim mesh: prints what a mesh file holds and how it was mended, and writes it mended. */
 #include "base/file.h"
 #include "cli/commands.h"
+#include "cli/file_conflicts.h"
 #include "cli/line/print.h"
 #include "cli/run_folder.h"
 #include "files/gltf_read.h"
-#include "io/file_conflicts.h"
 #include "scene/file/mesh_read.h"
 #include "scene/mesh_keys.h"
 

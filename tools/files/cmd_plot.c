@@ -6,13 +6,13 @@
 #include "base/file.h"
 #include "base/install_paths.h"
 #include "cli/commands.h"
+#include "cli/file_conflicts.h"
 #include "cli/line/print.h"
 #include "cli/show/screen.h"
 #include "files/force_length.h"
 #include "files/particle_read.h"
 #include "files/spectrum.h"
 #include "files/table_lines.h"
-#include "io/file_conflicts.h"
 #include "study/compare/compare_curves.h"
 
 #include <stdio.h>

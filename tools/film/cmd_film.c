@@ -4,13 +4,13 @@
  *   run.json -> evenly spaced pictures -> shrunk tiles with times -> one PNG
  *   several runs -> a folder of tiled pictures beside the film -> ffmpeg -> removed */
 #include "base/file.h"
+#include "base/png.h"
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/file_conflicts.h"
 #include "cli/line/print.h"
 #include "cli/run_folder.h"
 #include "film/film_sheet.h"
-#include "io/file_conflicts.h"
-#include "io/png.h"
 #include "shared/subprocess.h"
 
 #include <errno.h>

@@ -2,9 +2,9 @@
 #include "film/film_sheet.h"
 
 #include "base/clock.h"
+#include "base/png.h"
 #include "cli/line/print.h"
 #include "cli/show/screen.h"
-#include "io/png.h"
 
 #include <math.h>
 #include <stdio.h>

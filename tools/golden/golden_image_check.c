@@ -2,7 +2,7 @@
 #include "golden/golden_row.h"
 
 #include "base/file.h"
-#include "io/png.h"
+#include "base/png.h"
 #include "session/frame_picture.h"
 #include "shared/image_diff.h"
 

@@ -8,7 +8,7 @@
 #define CS_RUN_CHECKPOINT_H
 
 #include "base/hash.h"
-#include "io/checkpoint.h"
+#include "cli/run/checkpoint.h"
 #include "session/session.h"
 
 /* Interval of checkpoints; zeroed: none. */

@@ -3,8 +3,8 @@
 #include "cli/run/job_state.h"
 
 #include "base/file.h"
+#include "cli/file_conflicts.h"
 #include "cli/manifest.h"
-#include "io/file_conflicts.h"
 #include "session/provenance_write.h"
 
 #include <stdio.h>

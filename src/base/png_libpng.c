@@ -6,7 +6,7 @@
  * A file that is read is untrusted. Its sides and the memory of its chunks are limited before
  * libpng allocates; stated sides must fit to the length of the file; and the size of converted
  * rows is checked before the first is written. */
-#include "io/png.h"
+#include "base/png.h"
 
 #include <errno.h>
 #include <png.h>

@@ -7,7 +7,7 @@
  * and `closing`.
  *
  * Two images suffice: one is drawn while the other is encoded. More never gained time. */
-#include "io/frame_writer.h"
+#include "cli/run/frame_writer.h"
 
 #include "base/arena.h"
 #include "base/clock.h"

@@ -1,6 +1,6 @@
 /* Writes and reads checkpoints. The file is built and checked in memory, as one
  * cs_serialiser. */
-#include "io/checkpoint.h"
+#include "cli/run/checkpoint.h"
 
 #include "base/file.h"
 #include "base/hash.h"

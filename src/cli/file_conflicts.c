@@ -1,5 +1,5 @@
 /* Identifies files by device and inode, and by folder and name. */
-#include "io/file_conflicts.h"
+#include "cli/file_conflicts.h"
 
 #include "base/file.h"
 

@@ -3,7 +3,7 @@
 #ifndef CS_FRAME_WRITER_H
 #define CS_FRAME_WRITER_H
 
-#include "io/png.h"
+#include "base/png.h"
 
 #include <stdbool.h>
 

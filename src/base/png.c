@@ -1,5 +1,5 @@
 /* Files of pictures: opens and finishes them, and loads the module that knows PNG. */
-#include "io/png.h"
+#include "base/png.h"
 #include "base/install_paths.h"
 
 #include <stdlib.h>

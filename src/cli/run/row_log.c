@@ -1,5 +1,5 @@
 /* Appends rows to a file, cuts it back, and renames it at the end. */
-#include "io/row_log.h"
+#include "cli/run/row_log.h"
 
 #include "base/file.h"
 
