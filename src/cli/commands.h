@@ -10,6 +10,13 @@
 CS_COMMAND_LIST(X)
 #undef X
 
+/* The form of scene files, which the command scene prints. */
+
+/* Adds the JSON schema (2020-12) of scene files. */
+void cs_scene_print_schema(struct cs_text *out);
+/* Adds the rows of the scene tables as scdoc text, for clothsim-scene(5). */
+void cs_scene_print_manual(struct cs_text *out);
+
 /* Modules that were not installed with the program, which studies run in a
  * process of their own. */
 

@@ -4,9 +4,9 @@
  * All errors of commands come back here as one struct cs_error; nothing exits on its own.
  * A command that is a program of its own (tools/) has this main too, with no other command in
  * its table: it is started in place of this one, with the same words. */
-#include "base/ieee_check.h"
 #include "base/install_paths.h"
 #include "cli/commands.h"
+#include "cli/ieee_check.h"
 #include "cli/line/print.h"
 
 #include <errno.h>

@@ -2,7 +2,7 @@
  * refused with a message. Nothing is run. */
 #include "cli/commands.h"
 #include "cli/run/run_checkpoint.h"
-#include "sim/method.h"
+#include "session/method.h"
 
 #include <stdint.h>
 #include <stdlib.h>

@@ -12,7 +12,7 @@ n=0 failed=0
 expect() {
     wanted=$1
     shift
-    "$@" -DCS_ARITHMETIC_ALONE -o "$work/sums" "$root/src/base/ieee_check.c" -lm 2>/dev/null ||
+    "$@" -DCS_ARITHMETIC_ALONE -o "$work/sums" "$root/src/cli/ieee_check.c" -lm 2>/dev/null ||
         return 0
     if said=$("$work/sums"); then found=none; else found=fault; fi
     n=$((n + 1))

@@ -1,6 +1,7 @@
 /* What is written of a scene reads back as the same scene; schema and manual follow the tables.
  */
 #include "base/options.h"
+#include "cli/commands.h"
 #include "scene/file/json.h"
 #include "scene/file/scene_read.h"
 #include "unit.h"
@@ -40,8 +41,7 @@ static void assert_same_table(const struct cs_table *table, const void *a, const
 
 /* bit for bit, but an absent value equals an absent one */
 static void assert_same_row(const struct cs_option *row, const void *a, const void *b) {
-    const char *field_a = cs_option_value(row, a),
-               *field_b = cs_option_value(row, b);
+    const char *field_a = cs_option_value(row, a), *field_b = cs_option_value(row, b);
     const struct cs_list *list_a = (const void *)field_a, *list_b = (const void *)field_b;
     ck_assert_msg(cs_option_is_set(row, a) == cs_option_is_set(row, b), "%s", row->name);
     if (!cs_option_is_set(row, a))

@@ -43,12 +43,6 @@ enum cs_status cs_scene_refuse(const struct cs_scene *scene,
 void cs_scene_print(const struct cs_scene *scene, const struct cs_table *integrator_table,
                     const void *integrator_options, int indent, struct cs_text *out);
 
-/* Adds the JSON schema (2020-12) of scene files. */
-void cs_scene_print_schema(struct cs_text *out);
-
-/* Adds the rows of the scene tables as scdoc text, for clothsim-scene(5). */
-void cs_scene_print_manual(struct cs_text *out);
-
 /* Hash of the meaning of a scene, independent of the form of its file. */
 
 /* Hashes a scene with a method's options (its table and filled struct): XXH3 of 128 bits over

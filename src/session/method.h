@@ -2,10 +2,9 @@
 #ifndef CS_METHOD_H
 #define CS_METHOD_H
 
+#include "base/options.h"
 #include "base/text.h"
 #include "sim/registry.h"
-
-#include <clothsim/option.h>
 
 /* Any copy of it shares the options: only one may be finished. Zeroed: none. */
 struct cs_method {

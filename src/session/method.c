@@ -9,9 +9,7 @@
  * A comma separates both methods and pairs. A token between commas is a pair if it has a '=',
  * unless a ':' follows the token after the '=': then it is SERIES=NAME:... . A SERIES
  * therefore needs a method with options. */
-#include "sim/method.h"
-
-#include "base/options.h"
+#include "session/method.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,8 @@
 /* Prints the JSON schema (draft 2020-12) of scene files from the scene tables. */
 #include "base/json_writer.h"
 #include "base/options.h"
-#include "scene/file/scene_read.h"
+#include "cli/commands.h"
+#include "session/session.h"
 
 #include <stdio.h>
 #include <string.h>

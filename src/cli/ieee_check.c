@@ -3,7 +3,7 @@
 #ifdef CS_ARITHMETIC_ALONE
 const char *cs_ieee_check(void);
 #else
-#include "base/ieee_check.h"
+#include "cli/ieee_check.h"
 #endif
 
 #include <math.h>
