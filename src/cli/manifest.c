@@ -4,8 +4,8 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/hash.h"
-#include "base/table.h"
 #include "cli/run_folder.h"
+#include "session/table.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -40,7 +40,7 @@
 #ifndef CS_ENERGY_MONITOR_H
 #define CS_ENERGY_MONITOR_H
 
-#include "base/table.h"
+#include "session/table.h"
 #include "sim/run_state.h"
 
 #include "model/contact/contact_samples.h"

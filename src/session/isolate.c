@@ -1,7 +1,6 @@
 /* isolate.c - runs tasks in forked processes and reports how they ended. */
 #include "base/clock.h"
 #include "session/process_pool.h"
-#include "sim/crash.h"
 
 #include <errno.h>
 #include <fcntl.h>

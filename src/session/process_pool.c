@@ -2,9 +2,9 @@
 #include "session/process_pool.h"
 
 #include "base/clock.h"
-#include "sim/crash.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,6 +20,43 @@
 
 /* s that a worker may go on after the request to stop */
 #define STOP_SECONDS 0.5
+
+/* At most this is added to a waiting time by one look, s. */
+#define LONGEST_LOOK 0.2
+/* Fraction of the wall time that counts while a process does not compute. */
+#define WAITING_SHARE 0.25
+
+/* Each entry and exit of a call increments its parity. The waiting time grows while that does
+ * not change, the silence while the host is not at work either. */
+double cs_crash_patience_look(struct cs_crash_patience *patience,
+                              const struct cs_crash_log *log) {
+    const double now = cs_clock_wall(), cpu = cs_clock_cpu_of(patience->process);
+    const double wall = now - patience->looked;
+    const double passed = fmin(wall, fmax(cpu - patience->cpu, WAITING_SHARE * wall)),
+                 step = fmin(passed, LONGEST_LOOK);
+    patience->looked = now;
+    patience->cpu = cpu;
+    // an odd parity of the host is work that the method waits for
+    for (int k = 0; k < CS_CRASH_SIDES; k++) {
+        const unsigned call = atomic_load(&log->calls[k].call_parity);
+        const unsigned host = atomic_load(&log->calls[k].host_parity);
+        const bool same = call == patience->calls[k];
+        const bool mute = same && host == patience->hosts[k] && host % 2 == 0;
+        patience->waited[k] = same ? patience->waited[k] + step : 0;
+        patience->silent[k] = mute ? patience->silent[k] + step : 0;
+        patience->calls[k] = call;
+        patience->hosts[k] = host;
+    }
+    return step;
+}
+
+const struct cs_crash_call *cs_crash_find_silent(const struct cs_crash_patience *patience,
+                                                 const struct cs_crash_log *log, double limit) {
+    const struct cs_crash_call *call = log->calls + CS_CRASH_METHOD;
+    return limit > 0 && cs_crash_is_running(call) && patience->silent[CS_CRASH_METHOD] > limit
+               ? call
+               : NULL;
+}
 
 /* Memory that all workers share. */
 struct shared {

@@ -6,6 +6,7 @@
 #define CS_PROCESS_POOL_H
 
 #include "base/status.h"
+#include "sim/crash.h"
 
 #include <signal.h>
 #include <stdbool.h>
@@ -37,6 +38,27 @@ struct cs_process_pool {
     /* set: the workers are asked to stop, and ended if they do not; may be NULL */
     const volatile sig_atomic_t *stop;
 };
+
+/* Times in s since the calls of a log last showed a sign, as a watcher counts them. Zeroed but
+ * for `looked`, the time by the clock, and `process`, the one that logs. */
+struct cs_crash_patience {
+    unsigned calls[CS_CRASH_SIDES], hosts[CS_CRASH_SIDES]; /* parities at the last look */
+    double waited[CS_CRASH_SIDES];                         /* in the call that is under way */
+    double silent[CS_CRASH_SIDES]; /* in it, without work for it by the host */
+    double looked, cpu;            /* by the wall, and of the process, at the last look */
+    pid_t process;
+};
+
+/* Looks at the log, and returns the time since the last look: processor time of the process,
+ * and a quarter of the wall time if it sleeps or has to wait for a processor. A loaded machine
+ * thus gives no method less time. A suspended machine does not count: a look adds 0.2 s at
+ * most.
+ */
+double cs_crash_patience_look(struct cs_crash_patience *patience,
+                              const struct cs_crash_log *log);
+/* The call of a method that has asked the host for nothing for longer than a limit; or NULL. */
+const struct cs_crash_call *cs_crash_find_silent(const struct cs_crash_patience *patience,
+                                                 const struct cs_crash_log *log, double limit);
 
 /* s after which a method that keeps from the host hangs, in runs with a budget of so many
  * nominal s: far away, since no result may depend on a clock. */

@@ -1,7 +1,7 @@
 /* session.h - the only path from a scene to a running method; every command and study takes it.
  *
- * The face of the rooms below: studies and commands include this header, and those beside it,
- * in place of theirs. What it includes is a part of it.
+ * The face of the rooms below: exports, studies and commands include this header, and those
+ * beside it, in place of theirs. What it includes is a part of it.
  *
  *   scene file -> cs_scene_read -> registry -> method -> threads -> plan -> system -> run
  * Each arrow is one function that leaves its result in struct cs_session. Studies stop at the
@@ -14,6 +14,7 @@
 #include "model/plan.h"
 #include "model/post_step/contact_projection.h"
 #include "model/system/particle_system.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
 #include "scene/file/scene_read.h"
 #include "session/method.h"
@@ -163,6 +164,8 @@ double cs_follow_frames(const struct cs_scene *scene, double seconds);
 
 /* True if particles are led out of colliders, which gives energy (contact.untangle). */
 bool cs_system_untangles(const struct cs_system *system);
+/* True if contact is damped (contact.damping). */
+bool cs_system_damps_contact(const struct cs_system *system);
 /* True if a body bends by its mesh (elastic.bending). */
 bool cs_system_bends(const struct cs_system *system);
 /* The body of a particle of the system. */

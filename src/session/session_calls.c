@@ -66,6 +66,10 @@ bool cs_system_untangles(const struct cs_system *system) {
     return system->scene->contact->untangle > 0;
 }
 
+bool cs_system_damps_contact(const struct cs_system *system) {
+    return system->scene->contact->damping > 0;
+}
+
 bool cs_system_bends(const struct cs_system *system) {
     return system->bendings;
 }

@@ -71,27 +71,6 @@ static inline bool cs_crash_is_running(const struct cs_crash_call *call) {
     return atomic_load(&call->call_parity) % 2;
 }
 
-/* Times in s since the calls of a log last showed a sign, as a watcher counts them. Zeroed but
- * for `looked`, the time by the clock, and `process`, the one that logs. */
-struct cs_crash_patience {
-    unsigned calls[CS_CRASH_SIDES], hosts[CS_CRASH_SIDES]; /* parities at the last look */
-    double waited[CS_CRASH_SIDES];                         /* in the call that is under way */
-    double silent[CS_CRASH_SIDES]; /* in it, without work for it by the host */
-    double looked, cpu;            /* by the wall, and of the process, at the last look */
-    pid_t process;
-};
-
-/* Looks at the log, and returns the time since the last look: processor time of the process,
- * and a quarter of the wall time if it sleeps or has to wait for a processor. A loaded machine
- * thus gives no method less time. A suspended machine does not count: a look adds 0.2 s at
- * most.
- */
-double cs_crash_patience_look(struct cs_crash_patience *patience,
-                              const struct cs_crash_log *log);
-/* The call of a method that has asked the host for nothing for longer than a limit; or NULL. */
-const struct cs_crash_call *cs_crash_find_silent(const struct cs_crash_patience *patience,
-                                                 const struct cs_crash_log *log, double limit);
-
 /* Reports how a process ended, from the log of its calls. end: its status as wait gives it,
  * not a success. Returns CS_ERR_MODULE, CS_ERR_MEMORY if an allocation had failed, or
  * CS_ERR_INTERNAL if it crashed in no call or made none; the message is in *error. */

@@ -6,12 +6,12 @@
  * evaluations, and the drift of values measures all energies six times. */
 #include "sim/energy_ledger.h"
 
-#include "base/table.h"
 #include "base/vector.h"
 #include "model/event/events.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { POINTS = 3 };
@@ -336,11 +336,18 @@ void cs_energy_ledger_store_state(struct cs_energy_ledger *ledger, double t, con
     find_acceleration(ledger, t, x, v, ledger->acceleration);
 }
 
+/* Adds a field of the CSV: empty where the value is not finite. */
+static void add_number(struct cs_text *out, double value) {
+    cs_text_add(out, ",");
+    if (isfinite(value))
+        cs_text_add_real(out, value);
+}
+
 /* Adds one field of the CSV: the value, or with value NULL the name for the head, _ for
  * spaces. */
 static void add_column(struct cs_text *out, const char *name, const double *value) {
     if (value) {
-        cs_csv_add_number(out, *value);
+        add_number(out, *value);
         return;
     }
     cs_text_add(out, ",");
@@ -375,14 +382,14 @@ void cs_energy_ledger_print_head(struct cs_text *out) {
 void cs_energy_ledger_print_row(const struct cs_energy_ledger *ledger, uint32_t frame,
                                 struct cs_text *out) {
     cs_text_add(out, "%u", frame);
-    cs_csv_add_number(out, ledger->t);
+    add_number(out, ledger->t);
     add_columns(&energies, ledger->energies, out);
-    cs_csv_add_number(out, cs_energy_ledger_sum(ledger));
+    add_number(out, cs_energy_ledger_sum(ledger));
     add_columns(&work_done, ledger->work, out);
     double angular[3] = {0};
     cs_diagnostics_add_moment(ledger->system, ledger->system->mass, 1, ledger->state,
                               ledger->state + length_of(ledger), angular);
     for (int k = 0; k < 6; k++)
-        cs_csv_add_number(out, k < 3 ? angular[k] : ledger->couple[k - 3]);
+        add_number(out, k < 3 ? angular[k] : ledger->couple[k - 3]);
     cs_text_add(out, "\n");
 }

@@ -4,7 +4,7 @@
 #ifndef CS_FUZZ_FOLDER_H
 #define CS_FUZZ_FOLDER_H
 
-#include "base/table.h"
+#include "session/table.h"
 
 #include <fcntl.h>
 #include <stdio.h>

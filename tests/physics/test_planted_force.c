@@ -7,6 +7,7 @@
  *   swing       v' = cos(3 t)                  v(1) = sin(3)/3, x(1) = (1 - cos 3)/9
  * Methods with a step are run at two and must fall by their order; those with error control
  * must meet 1e-5. Methods of another model are left out. */
+#include "borders/sampled_run.h"
 #include "methods.h"
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
@@ -14,7 +15,6 @@
 #include "planted_terms.h"
 #include "sim/energy_ledger.h"
 #include "sim/registry.h"
-#include "study/stability_verdict.h"
 
 #include <math.h>
 #include <stdio.h>

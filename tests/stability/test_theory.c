@@ -1,7 +1,7 @@
 /* Linear theory from the code that runs: step limits of single oscillators, the fastest motion
  * of a chain, and the verdicts of runs that are known. */
+#include "borders/theory.h"
 #include "session/energy_monitor.h"
-#include "session/theory.h"
 
 #include "../physics/fixture.h"
 

@@ -1,6 +1,6 @@
 /* Rows of tables read back as they were written, by however many processes. */
 #include "base/file.h"
-#include "base/table.h"
+#include "session/table.h"
 #include "unit.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
  * What moves by itself, colliders for example, is where it is at time 0. */
 #include "advise/cheapest.h"
 
-#include "session/theory.h"
+#include "borders/theory.h"
 
 #include <math.h>
 #include <string.h>

@@ -347,7 +347,8 @@ enum cs_status cs_stability_open(struct cs_stability *stability,
         return error->status;
     stability->integrator = stability->session.method.integrator;
     if (!cs_method_takes_dt(stability->integrator))
-        return cs_fail(error, CS_ERR_USAGE, "integrator \"%s\" %s: it has no map of dt; expected -i NAME of one "
+        return cs_fail(error, CS_ERR_USAGE,
+                       "integrator \"%s\" %s: it has no map of dt; expected -i NAME of one "
                        "with steps of equal length, such as rk4",
                        stability->integrator->name,
                        stability->integrator->traits & CS_ADAPTIVE ? "chooses its own steps"

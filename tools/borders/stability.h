@@ -1,7 +1,7 @@
 /* stability.h - maps the stable time steps of a method.
  *
  * The map has cells of dt against an axis of the scene. Each cell is one run with a verdict
- * (stability_verdict.h) relative to the reference of its column. The border between stable and
+ * (sampled_run.h) relative to the reference of its column. The border between stable and
  * unstable cells is bisected, and the limits of linear theory are computed for comparison
  * (theory.h).
  *
@@ -10,8 +10,8 @@
 #ifndef CS_STABILITY_H
 #define CS_STABILITY_H
 
-#include "base/table.h"
 #include "borders/stability_state.h"
+#include "session/table.h"
 
 /* Reads scene and method, and names the series. Returns CS_ERR_USAGE if the integrator has no
  * fixed dt; further CS_ERR_SCENE, CS_ERR_FILE, CS_ERR_MEMORY. settings must outlive the map.

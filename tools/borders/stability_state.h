@@ -3,11 +3,11 @@
 #define CS_STABILITY_STATE_H
 
 #include "base/hash.h"
-#include "base/table.h"
 #include "base/text.h"
-#include "session/study_scenes.h"
-#include "session/theory.h"
-#include "study/stability_verdict.h"
+#include "borders/sampled_run.h"
+#include "borders/study_scenes.h"
+#include "borders/theory.h"
+#include "session/table.h"
 
 /* Runs a trusted reference that other runs are judged by, and evaluates
  * linear theory along its trajectory.

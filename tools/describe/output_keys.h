@@ -3,7 +3,7 @@
 #ifndef CS_OUTPUT_KEYS_H
 #define CS_OUTPUT_KEYS_H
 
-#include "base/table.h"
+#include "session/table.h"
 
 /* A key of a JSON file. */
 struct cs_output_key {

@@ -8,9 +8,9 @@
 #define CS_GOLDEN_TABLE_H
 
 #include "base/hash.h"
-#include "base/table.h"
 #include "base/text.h"
 #include "golden/golden_states.h"
+#include "session/table.h"
 
 /* Limits of a row: overrides, and bytes of their text with its end. */
 enum { CS_GOLDEN_SETS_MAX = 16, CS_GOLDEN_SETS_BYTES = 1024 };

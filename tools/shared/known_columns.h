@@ -2,7 +2,7 @@
 #ifndef CS_KNOWN_COLUMNS_H
 #define CS_KNOWN_COLUMNS_H
 
-#include "base/table.h"
+#include "session/table.h"
 
 /* The columns of the ledger that stand in every one: forces may add columns of their own. */
 extern const struct cs_column cs_ledger_columns[];

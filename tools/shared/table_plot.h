@@ -3,8 +3,8 @@
 #ifndef CS_TABLE_PLOT_H
 #define CS_TABLE_PLOT_H
 
-#include "base/table.h"
 #include "diagram/diagram.h"
+#include "session/table.h"
 
 enum { CS_TABLE_COLUMNS = 128 };
 

@@ -5,7 +5,6 @@
 #include "base/install_paths.h"
 #include "session/frame_picture.h"
 #include "session/session.h"
-#include "session/study_scenes.h"
 #include "study/compare/timing_rounds.h"
 
 #include <math.h>
@@ -163,13 +162,18 @@ static enum cs_status append_soft_row(struct cs_soft *soft, enum cs_soft_series 
     return CS_OK;
 }
 
+/* True if the body is a mesh of limbs with a network of springs: its detail can be varied. */
+static bool has_limbs(const struct cs_body *body) {
+    return body->mesh.present && body->mesh.shape == CS_MESH_LIMBS && body->network.present;
+}
+
 enum cs_status cs_soft_check(const struct cs_soft *soft, struct cs_error *error) {
     struct cs_scene scene;
     char installed[CS_DATA_PATH_MAX];
     if (cs_scene_read(&scene, cs_scene_find(soft->session.scene, installed, sizeof installed),
                       soft->session.overrides, soft->session.n_overrides, error))
         return error->status;
-    if (!cs_scene_has_limbs(&scene, 0))
+    if (!has_limbs(cs_scene_bodies(&scene)))
         cs_fail(error, CS_ERR_SCENE,
                 "%s: bodies[0]: expected a mesh of the shape \"limbs\" with a network",
                 soft->session.scene);

@@ -7,9 +7,9 @@
 #define CS_SWEEP_CELL_H
 
 #include "base/hash.h"
-#include "base/table.h"
 #include "base/text.h"
 #include "session/session.h"
+#include "session/table.h"
 
 enum { CS_PARAMETER_SWEEP_CELLS_MAX = 10000000, CS_PARAMETER_AXES_MAX = 16 };
 

@@ -8,9 +8,9 @@
 #define CS_ARGS_H
 
 #include "base/arena.h"
-#include "base/table.h"
 #include "base/text.h"
 #include "session/session.h"
+#include "session/table.h"
 
 #include <stdbool.h>
 #include <stddef.h>

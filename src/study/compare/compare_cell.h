@@ -4,9 +4,9 @@
 #define CS_CELL_H
 
 #include "base/hash.h"
-#include "base/table.h"
 #include "session/provenance_write.h"
 #include "session/session.h"
+#include "session/table.h"
 
 /* One row. All fields are values, so rows can be copied and moved. Figures that do not apply
  * are NAN: an error beyond the horizon, an order that is not steady. */

@@ -2,7 +2,7 @@
 #ifndef CS_COMPARE_STATE_H
 #define CS_COMPARE_STATE_H
 
-#include "base/table.h"
+#include "session/table.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare_cell.h"
 #include "study/compare/timing_rounds.h"

@@ -2,7 +2,6 @@
 #include "study/compare/compare.h"
 
 #include "base/file.h"
-#include "session/study_scenes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +12,12 @@
 static uint32_t scaled(int64_t particles, uint32_t cells, int64_t first) {
     const int64_t product = (particles - 1) * cells;
     return product % first ? 0 : (uint32_t)(product / first + 1);
+}
+
+/* Columns and rows of a body's grid; NULL: it is a mesh. */
+static const int64_t *grid_of(const struct cs_scene *scene, uint32_t body) {
+    const struct cs_cloth *cloth = &cs_scene_bodies(scene)[body].cloth;
+    return cloth->present ? cloth->grid : NULL;
 }
 
 static const char *copy_text(struct cs_mesh_study *study, const char *text,
@@ -58,8 +63,7 @@ static enum cs_status make_level(struct cs_mesh_study *study, struct cs_mesh_lev
         memcpy(level->overrides, session->overrides,
                session->n_overrides * sizeof *level->overrides);
     for (uint32_t b = 0; b < n; b++)
-        if (set_grid(study, level, b, cs_scene_grid(scene, b), cs_scene_grid(scene, 0)[0] - 1,
-                     error))
+        if (set_grid(study, level, b, grid_of(scene, b), grid_of(scene, 0)[0] - 1, error))
             break;
     return error->status;
 }
@@ -69,11 +73,11 @@ static enum cs_status make_levels(struct cs_mesh_study *study, uint32_t low,
                                   const struct cs_scene *scene, struct cs_error *error) {
     study->n_bodies = scene->bodies.n;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        if (!cs_scene_grid(scene, b))
+        if (!grid_of(scene, b))
             return cs_fail(error, CS_ERR_SCENE,
                            "%s: bodies[%u] is a mesh, expected grids for --mesh",
                            session->scene, b);
-    if (cs_scene_grid(scene, 0)[0] < 2)
+    if (grid_of(scene, 0)[0] < 2)
         return cs_fail(error, CS_ERR_SCENE, "%s: bodies[0] has no cells", session->scene);
     study->levels = cs_arena_alloc_array(&study->arena, study->n, sizeof *study->levels, error);
     for (uint32_t k = 0; k < study->n && !error->status; k++) {

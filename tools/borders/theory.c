@@ -1,10 +1,8 @@
 /* Measures the amplification matrix of a method's step on a damped oscillator, and finds the
  * largest stable step of a method on a system by linear theory. */
-#include "session/theory.h"
+#include "borders/theory.h"
 
-#include "model/force/diagnostics.h"
-#include "scene/body_keys.h"
-#include "scene/contact_keys.h"
+#include "session/energy_monitor.h"
 #include "session/session.h"
 
 #include <math.h>
@@ -355,7 +353,7 @@ enum cs_status cs_theory_at(struct cs_theory *theory, const double *x,
  * that is only damped: the fastest of those is searched by itself. */
 static enum cs_status consider_dampers(struct cs_theory *theory, const double *x,
                                        struct cs_theory_limit *limit, struct cs_error *error) {
-    if (!(theory->modes.system->scene->contact->damping > 0) ||
+    if (!cs_system_damps_contact(theory->modes.system) ||
         !cs_spectral_bounds_depend_on_state(theory->modes.system))
         return CS_OK;
     theory->modes.has_start = false;

@@ -1,5 +1,5 @@
 /* Prints and cuts rows of tables; reads and appends them, one process at a time. */
-#include "base/table.h"
+#include "session/table.h"
 
 #include "base/file.h"
 #include "base/hash.h"

@@ -1,7 +1,5 @@
 /* Varies one value of a scene over the columns of a stability map. */
-#include "session/study_scenes.h"
-
-#include "scene/body_keys.h"
+#include "borders/study_scenes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,16 +11,6 @@ const char *const cs_axis_names[] = {"stiffness",  "damping", "mass",
 const char *cs_axis_unit(enum cs_axis axis) {
     static const char *const units[CS_AXES] = {"N/m", "N s/m", "kg", "columns", "N/m"};
     return units[axis];
-}
-
-const int64_t *cs_scene_grid(const struct cs_scene *scene, uint32_t body) {
-    const struct cs_cloth *cloth = &cs_scene_bodies(scene)[body].cloth;
-    return cloth->present ? cloth->grid : NULL;
-}
-
-bool cs_scene_has_limbs(const struct cs_scene *scene, uint32_t body) {
-    const struct cs_body *of = cs_scene_bodies(scene) + body;
-    return of->mesh.present && of->mesh.shape == CS_MESH_LIMBS && of->network.present;
 }
 
 /* The stiffest of the three kinds of springs stands for all: they are scaled together. */

@@ -39,10 +39,4 @@ double cs_axis_scene_value(const struct cs_system *system, enum cs_axis axis);
 /* Values that the axis covers where none are asked for. */
 struct cs_range cs_axis_range(const struct cs_system *system, enum cs_axis axis);
 
-/* True if the body is a mesh of limbs with a network of springs: its detail can be varied. */
-bool cs_scene_has_limbs(const struct cs_scene *scene, uint32_t body);
-
-/* Columns and rows of a body's grid, borrowed from the scene; NULL: it is a mesh. */
-const int64_t *cs_scene_grid(const struct cs_scene *scene, uint32_t body);
-
 #endif
