@@ -12,13 +12,24 @@ from pathlib import Path
 
 import sources
 
+# rooms of src whose lines of code are counted together
+GROUPS = {
+    "core": ("base", "mesh", "scene", "model", "sim"),
+    "draw": ("draw",),
+    "study": ("session", "export", "diagram", "study"),
+    "cli": ("cli",),
+}
 # the figure, its limit, what it is
 # lowered with each thing that is made smaller
 LIMITS = (
-    ("units", "most", 293, "units in src (NAME.c, NAME.h or both)"),
-    ("headers", "most", 176, "headers in src"),
+    ("units", "most", 292, "units in src (NAME.c, NAME.h or both)"),
+    ("headers", "most", 175, "headers in src"),
     ("arrows", "most", 38, "arrows between rooms"),
-    ("code", "most", 61401, "lines of code in src"),
+    ("code", "most", 60822, "lines of code in src"),
+    ("core", "most", 37000, "lines of code in base, mesh, scene, model and sim"),
+    ("draw", "most", 6300, "lines of code in draw"),
+    ("study", "most", 12000, "lines of code in session, export, diagram and study"),
+    ("cli", "most", 6000, "lines of code in cli"),
     ("comments", "least", 15.0, "% of the lines of code and comment in src are comment"),
 )
 # a type that one header declares, and that alternatives define: no program sees two of them
@@ -77,6 +88,12 @@ def arrows(texts):
     return {(start, end) for start, end in found if start != end}
 
 
+def check_groups(checks, paths):
+    known = {room for rooms in GROUPS.values() for room in rooms}
+    for room in sorted({room_of(path) for path in paths} - known):
+        checks.check(False, f"src/{room}: a room that no limit counts, see GROUPS")
+
+
 def lines(raw, bare):
     """Numbers of lines with code and of lines with nothing but comment."""
     code = sum(1 for line in bare.split("\n") if line.strip())
@@ -94,7 +111,9 @@ def main():
     check_tags(checks, {path: sources.code_of(text) for path, text in raw.items()})
     check_headers(checks, raw)
 
-    code, comments = map(sum, zip(*(lines(raw[path], bare[path]) for path in src)))
+    check_groups(checks, src)
+    counts = {path: lines(raw[path], bare[path]) for path in src}
+    code, comments = map(sum, zip(*counts.values()))
     figures = {
         "units": len({path.with_suffix("") for path in src}),
         "headers": sum(path.suffix == ".h" for path in src),
@@ -102,6 +121,8 @@ def main():
         "code": code,
         "comments": 100 * comments / (code + comments),
     }
+    for group, members in GROUPS.items():
+        figures[group] = sum(n for path, (n, _) in counts.items() if room_of(path) in members)
     for name, kind, limit, what in LIMITS:
         value = figures[name]
         held = value <= limit if kind == "most" else value >= limit
