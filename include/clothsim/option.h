@@ -91,7 +91,8 @@ struct cs_table {
      * rows. */
     bool one_of;
     uint32_t n_always_optional;
-    /* The field of a TABLE is a pointer to the struct, which stands elsewhere. */
+    /* The field of a TABLE is a pointer to the struct, which stands elsewhere; NULL where an
+     * optional table is absent. */
     bool apart;
     /* The row that a plain text, a plain number, or a plain list in place of the object
      * stands for; or NULL. */

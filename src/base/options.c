@@ -28,9 +28,11 @@ void cs_options_default(const struct cs_table *table, void *object) {
         const struct cs_option *row = table->rows + r;
         const struct cs_value_kind *kind = cs_value_kind_of(row);
         void *field = cs_option_field(row, object);
-        if (!kind->set && cs_option_is_optional(row))
+        if (row->type == CS_TABLE && row->table->apart && row->table->optional)
+            memset((char *)object + row->offset, 0, sizeof field);
+        else if (!kind->set && cs_option_is_optional(row))
             memset(field, 0, kind->size);
-        if (row->type == CS_TABLE)
+        if (row->type == CS_TABLE && cs_option_value(row, object))
             cs_options_default(row->table, field);
         for (uint32_t i = 0; kind->set && i < components_of(row); i++)
             kind->set(field, i, default_of(row, i));
@@ -271,7 +273,7 @@ static bool is_text_given(const struct cs_option *row, const void *field) {
 
 /* an optional struct begins with its bool `present` */
 static bool is_table_given(const struct cs_option *row, const void *field) {
-    return !row->table->optional || *(const bool *)field;
+    return !row->table->optional || (field && *(const bool *)field);
 }
 
 static bool is_list_given(const struct cs_option *row, const void *field) {

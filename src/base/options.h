@@ -8,7 +8,8 @@
 
 #include <clothsim/option.h>
 
-/* Returns the field of a row in an object; of a table that stands apart, its struct. */
+/* Returns the field of a row in an object; of a table that stands apart, its struct, or NULL if
+ * it is absent. */
 static inline void *cs_option_field(const struct cs_option *row, void *object) {
     void *field = (char *)object + row->offset;
     return row->type == CS_TABLE && row->table->apart ? *(void **)field : field;
@@ -18,7 +19,8 @@ static inline const void *cs_option_value(const struct cs_option *row, const voi
     return row->type == CS_TABLE && row->table->apart ? *(void *const *)field : field;
 }
 
-/* Writes the defaults of all rows, and of nested tables, into *object. Lists become empty. */
+/* Writes the defaults of all rows, and of nested tables, into *object. Lists become empty;
+ * pointers to optional tables that stand apart become NULL. */
 void cs_options_default(const struct cs_table *table, void *object);
 
 /* Tells whether the row may be absent without a default in its place: an optional table, or a

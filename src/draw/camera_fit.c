@@ -252,7 +252,7 @@ static void grow_by(double low[3], double high[3], const struct cs_posed_collide
 
 static void grow_by_mesh(double low[3], double high[3],
                          const struct cs_posed_collider *collider) {
-    const uint32_t n = collider->collider->mesh.geometry->n;
+    const uint32_t n = collider->collider->geometry->n;
     for (uint32_t i = 0; i < n; i++) {
         double own[3], place[3];
         cs_collider_mesh_vertex(collider, i, own);

@@ -6,6 +6,7 @@
 #include "mesh/trimesh.h"
 #include "model/system/surfaces.h"
 #include "scene/body_keys.h"
+#include "scene/mesh_keys.h"
 #include "scene/picture_keys.h"
 
 // m: positions farther away are drawn at this bound, because they would upset the rasteriser
@@ -68,8 +69,8 @@ enum cs_status cs_mesh_init(struct cs_mesh *mesh, const struct cs_system *system
                       : NULL;
     mesh->flat_shading = material->shading == CS_SHADING_FLAT;
     // only boxes have creases: other shapes are smooth
-    const struct cs_mesh_source *source = &cs_scene_bodies(system->scene)[body].mesh;
-    mesh->has_creases = !mesh->flat_shading && source->present && source->shape == CS_MESH_BOX;
+    const struct cs_mesh_source *source = cs_scene_bodies(system->scene)[body].mesh;
+    mesh->has_creases = !mesh->flat_shading && source && source->shape == CS_MESH_BOX;
     mesh->split_vertices = mesh->flat_shading || mesh->has_creases || marked ||
                            (textured && range->mesh && (range->mesh->uv || mesh->faces));
     mesh->has_curvature =

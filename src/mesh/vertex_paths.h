@@ -20,22 +20,10 @@
 #include "base/arena.h"
 #include "base/hash.h"
 
-#include <clothsim/option.h>
 #include <stdbool.h>
 #include <stdint.h>
 
 enum cs_paths_end { CS_PATHS_HOLD, CS_PATHS_LOOP, CS_PATHS_CONTINUE };
-
-/* The keys of a scene that name them. */
-struct cs_key_frames {
-    bool present;
-    char file[CS_TEXT_MAX];  /* PC2, NPZ, or OBJ with # for the digits of a number */
-    char array[CS_TEXT_MAX]; /* of an NPZ; "": positions */
-    int64_t first, count;    /* of OBJ files; count 0: not given */
-    double rate;             /* 1/s */
-    double start;            /* s, time of the first key frame */
-    int32_t end;             /* enum cs_paths_end */
-};
 
 /* Paths of n vertices through n_keys >= 2 keys. The arrays belong to the arena of their maker.
  */

@@ -3,6 +3,7 @@
 
 #include "base/pool.h"
 #include "mesh/trimesh.h"
+#include "mesh/vertex_paths.h"
 #include "model/contact/rebound.h"
 #include "model/event/event_state.h"
 #include "model/force/terms.h"
@@ -41,10 +42,10 @@ static void count_bodies(struct cs_plan *plan, const struct cs_scene *scene) {
         const uint32_t before = plan->n_springs;
         plan->n += (uint32_t)cs_body_count(bodies + b);
         cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &plan->n_springs);
-        if (!bodies[b].mesh.present)
+        if (!bodies[b].mesh)
             continue;
         const uint32_t inner =
-            bodies[b].springs.stretch > 0 ? bodies[b].mesh.geometry->n_network_springs : 0;
+            bodies[b].springs.stretch > 0 ? bodies[b].geometry->n_network_springs : 0;
         plan->n_network_springs += inner;
         plan->n_surface_springs += plan->n_springs - before - inner;
     }
@@ -56,11 +57,11 @@ static void count_bytes(struct cs_plan *plan, const struct cs_scene *scene) {
     const struct cs_body *bodies = cs_scene_bodies(scene);
     size_t *meshes = &plan->rows[CS_FEATURE_MESHES].bytes;
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        *meshes += bodies[b].mesh.present ? bodies[b].mesh.geometry->bytes : 0;
+        *meshes += bodies[b].geometry ? bodies[b].geometry->bytes : 0;
     for (uint32_t c = 0; c < scene->colliders.n; c++) {
-        const struct cs_mesh_source *mesh = &cs_scene_colliders(scene)[c].mesh;
-        *meshes += mesh->present ? mesh->geometry->bytes : 0;
-        plan->rows[CS_FEATURE_KEY_FRAMES].bytes += mesh->paths ? mesh->paths->bytes : 0;
+        const struct cs_collider *of = cs_scene_colliders(scene) + c;
+        *meshes += of->geometry ? of->geometry->bytes : 0;
+        plan->rows[CS_FEATURE_KEY_FRAMES].bytes += of->paths ? of->paths->bytes : 0;
     }
 }
 
@@ -73,7 +74,7 @@ static bool any_body(const struct cs_scene *scene, bool (*has)(const struct cs_b
     return false;
 }
 static bool is_mesh(const struct cs_body *body) {
-    return body->mesh.present;
+    return body->mesh;
 }
 static bool has_damping(const struct cs_body *body) {
     return body->springs.damping > 0;

@@ -20,6 +20,7 @@
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
 #include "scene/body_particles.h"
+#include "scene/mesh_keys.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +45,7 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
     /* the first pass counts; springs of meshes alone have lists */
     for (uint32_t b = 0; b < system->scene->bodies.n; b++)
         n_runs += cs_springs_of_body(bodies + b, b, 0, NULL, NULL,
-                                     bodies[b].mesh.present ? &n_listed : &n_springs);
+                                     bodies[b].mesh ? &n_listed : &n_springs);
     struct cs_spring_run *runs =
         cs_arena_alloc_array(&system->arena, n_runs, sizeof *runs, error);
     double *lists = allocate(system, 2 * (size_t)n_listed, error);
@@ -55,7 +56,7 @@ static void build_springs(struct cs_system *system, struct cs_error *error) {
         const uint32_t before = n_springs;
         n_runs += cs_springs_of_body(bodies + b, b, system->bodies[b].first, runs + n_runs,
                                      lists, &n_springs);
-        if (bodies[b].mesh.present)
+        if (bodies[b].mesh)
             lists += 2 * (size_t)(n_springs - before);
     }
     system->springs = (struct cs_springs){.runs = runs, .n_runs = n_runs, .n = n_springs};
@@ -161,7 +162,7 @@ static void fill_area(struct cs_system *system) {
  * particles. */
 static void spin_body(struct cs_system *system, const struct cs_body *body,
                       const struct cs_body_range *range, const bool *pinned) {
-    const double *w = body->mesh.present ? body->mesh.spin : body->cloth.spin;
+    const double *w = body->mesh ? body->mesh->spin : body->cloth.spin;
     const double *centre = cs_body_placement(body)->translate;
     const size_t n = system->view.n;
     if (w[0] == 0 && w[1] == 0 && w[2] == 0)
@@ -257,7 +258,7 @@ static void alloc_arrays(struct cs_system *system, struct cs_error *error) {
         const struct cs_body *body = cs_scene_bodies(system->scene) + b;
         system->bodies[b] = (struct cs_body_range){
             first, (uint32_t)cs_body_count(body), (uint32_t)body->cloth.grid[0],
-            (uint32_t)body->cloth.grid[1], body->mesh.geometry};
+            (uint32_t)body->cloth.grid[1], body->geometry};
         first += system->bodies[b].count;
     }
 }

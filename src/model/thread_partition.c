@@ -37,7 +37,7 @@ static struct sizes sizes_of(const struct cs_scene *scene, uint32_t threads) {
                      runs = cs_springs_of_body(bodies + b, b, 0, NULL, NULL, &springs);
         sizes.particles += n;
         sizes.runs += runs;
-        if (!bodies[b].mesh.present)
+        if (!bodies[b].mesh)
             continue;
         sizes.listed_runs += runs;
         sizes.listed_springs += springs;

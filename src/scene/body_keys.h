@@ -5,8 +5,20 @@
 
 #include "mesh/spring_network.h"
 #include "scene/elastic_keys.h"
-#include "scene/mesh_keys.h"
 #include "scene/scene.h"
+
+/* A rigid placement x = R p + translate; R from the matrix, or from the quaternion. */
+struct cs_pose {
+    double translate[3]; /* m */
+    double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
+    double matrix[9];    /* rows of a rotation matrix; first element NAN: absent */
+};
+
+/* A collider that carries particles along. */
+struct cs_holder {
+    bool present;
+    int64_t collider; /* -1: not given, refused */
+};
 
 /* Plane of the cloth before `place` is applied. */
 enum cs_start { CS_START_HANGING, CS_START_FLAT };
@@ -46,9 +58,9 @@ enum cs_pin_name {
 /* Selects pinned particles; one of: a named corner or edge, a particle index, a box, a name of
  * faces of a mesh file. */
 struct cs_pin {
-    struct cs_holder to; /* of a body's pins alone */
-    int32_t at;          /* enum cs_pin_name, -1: not given */
-    int64_t index;       /* particle within the body, -1: not given */
+    struct cs_holder *to; /* of a body's pins alone; NULL: none */
+    int32_t at;           /* enum cs_pin_name, -1: not given */
+    int64_t index;        /* particle within the body, -1: not given */
     struct cs_box box;
     char set[CS_TEXT_MAX]; /* ""; not given */
 };
@@ -79,6 +91,7 @@ struct cs_seam {
     double closing_time;    /* s, in which particles are led to a collider */
 };
 
+struct cs_mesh_source;
 struct cs_shape_clusters;
 /* A body that is drawn to its shape (Mueller et al. 2005) instead of held by springs. */
 struct cs_shape_matching {
@@ -137,8 +150,11 @@ struct cs_material {
 
 /* A deformable body: its shape, masses, springs, pins, contact and look. */
 struct cs_body {
-    struct cs_cloth cloth; /* either this or the mesh */
-    struct cs_mesh_source mesh;
+    struct cs_cloth cloth;       /* either this or the mesh */
+    struct cs_mesh_source *mesh; /* mesh_keys.h; NULL: none */
+    /* of the mesh, not in the tables: made by the reader, owned by the scene's arena; constant
+     */
+    const struct cs_trimesh *geometry;
     struct cs_spring_network network;
     struct cs_shape_matching shape_matching;
     struct cs_mass mass;

@@ -2,6 +2,7 @@
  * itself, and by the colliders that are meshes. */
 #include "scene/body_pairs.h"
 
+#include "mesh/vertex_paths.h"
 #include "scene/body_keys.h"
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
@@ -12,7 +13,7 @@
 
 uint32_t cs_scene_surfaces(const struct cs_scene *scene) {
     for (uint32_t c = 0; c < scene->colliders.n; c++)
-        if (cs_scene_colliders(scene)[c].mesh.present)
+        if (cs_scene_colliders(scene)[c].mesh)
             return scene->bodies.n + scene->colliders.n;
     return scene->bodies.n;
 }
@@ -23,14 +24,13 @@ bool cs_scene_carries_pins(const struct cs_scene *scene, bool by_key_frames) {
         const struct cs_list *list = &cs_scene_bodies(scene)[b].pins;
         const struct cs_pin *pins = list->items;
         for (uint32_t p = 0; p < list->n; p++)
-            if (pins[p].to.present &&
-                (!by_key_frames || colliders[pins[p].to.collider].mesh.key_frames.present))
+            if (pins[p].to && (!by_key_frames || colliders[pins[p].to->collider].paths))
                 return true;
     }
     const struct cs_seam *seams = scene->seams.items;
     for (uint32_t s = 0; s < scene->seams.n; s++)
         if (seams[s].to.collider >= 0 &&
-            (!by_key_frames || colliders[seams[s].to.collider].mesh.key_frames.present))
+            (!by_key_frames || colliders[seams[s].to.collider].paths))
             return true;
     return false;
 }
@@ -46,14 +46,14 @@ bool cs_scene_sews(const struct cs_scene *scene, bool to_collider) {
 bool cs_scene_has_key_frames(const struct cs_scene *scene) {
     bool any = false;
     for (uint32_t c = 0; c < scene->colliders.n; c++)
-        any = any || cs_scene_colliders(scene)[c].mesh.paths;
+        any = any || cs_scene_colliders(scene)[c].paths;
     return any;
 }
 
 double cs_scene_key_frame_speed(const struct cs_scene *scene) {
     double most = 0;
     for (uint32_t c = 0; c < scene->colliders.n; c++) {
-        const struct cs_vertex_paths *paths = cs_scene_colliders(scene)[c].mesh.paths;
+        const struct cs_vertex_paths *paths = cs_scene_colliders(scene)[c].paths;
         most = paths && paths->speed > most ? paths->speed : most;
     }
     return most;
@@ -69,7 +69,7 @@ static bool hits_obstacle(const struct cs_scene *scene, uint32_t a, uint32_t b,
                           double *friction) {
     const struct cs_collider *collider = cs_scene_collider_at(scene, a < b ? b : a);
     *friction = collider->friction;
-    return collider->mesh.present && (a < scene->bodies.n || b < scene->bodies.n);
+    return collider->mesh && (a < scene->bodies.n || b < scene->bodies.n);
 }
 
 bool cs_scene_bodies_collide(const struct cs_scene *scene, uint32_t a, uint32_t b,
@@ -104,7 +104,7 @@ bool cs_scene_has_body_contact(const struct cs_scene *scene) {
 bool cs_scene_sticks_to(const struct cs_scene *scene, uint32_t collider) {
     const struct cs_collider *to = cs_scene_colliders(scene) + collider;
     return scene->contact->law == CS_CONTACT_FORCE &&
-           scene->contact->friction_law == CS_FRICTION_BRISTLES && !to->mesh.present &&
+           scene->contact->friction_law == CS_FRICTION_BRISTLES && !to->mesh &&
            cs_event_key_acts(scene, to->friction, ".friction");
 }
 

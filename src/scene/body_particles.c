@@ -6,22 +6,22 @@
 #include "base/vec3.h"
 #include "mesh/trimesh.h"
 #include "scene/body_keys.h"
+#include "scene/mesh_keys.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 int64_t cs_body_count(const struct cs_body *body) {
-    return body->mesh.present ? body->mesh.geometry->n
-                              : body->cloth.grid[0] * body->cloth.grid[1];
+    return body->mesh ? body->geometry->n : body->cloth.grid[0] * body->cloth.grid[1];
 }
 
 const struct cs_pose *cs_body_placement(const struct cs_body *body) {
-    return body->mesh.present ? &body->mesh.place : &body->cloth.place;
+    return body->mesh ? &body->mesh->place : &body->cloth.place;
 }
 
 const double *cs_body_velocity(const struct cs_body *body) {
-    return body->mesh.present ? body->mesh.velocity : body->cloth.velocity;
+    return body->mesh ? body->mesh->velocity : body->cloth.velocity;
 }
 
 /* R = I + 2 w [v]x + 2 [v]x^2 for the quaternion (v, w), multiplied out. */
@@ -53,10 +53,10 @@ static double half_sine(double a) {
 
 /* Places the vertices of a mesh: x = R p + translate. */
 static void place_mesh(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
-    const struct cs_trimesh *mesh = body->mesh.geometry;
-    const double *p = mesh->positions, *shift = body->mesh.place.translate;
+    const struct cs_trimesh *mesh = body->geometry;
+    const double *p = mesh->positions, *shift = body->mesh->place.translate;
     double r[9];
-    cs_pose_rotation(&body->mesh.place, r);
+    cs_pose_rotation(&body->mesh->place, r);
     for (size_t i = 0; i < mesh->n; i++)
         for (size_t c = 0; c < 3; c++)
             x[c * n + first + i] = r[3 * c] * p[i] + r[3 * c + 1] * p[mesh->n + i] +
@@ -86,15 +86,15 @@ static void place_grid(const struct cs_body *body, uint32_t n, uint32_t first, d
 }
 
 void cs_body_position(const struct cs_body *body, uint32_t n, uint32_t first, double *x) {
-    if (body->mesh.present)
+    if (body->mesh)
         place_mesh(body, n, first, x);
     else
         place_grid(body, n, first, x);
 }
 
 double cs_body_area(const struct cs_body *body, uint32_t i) {
-    if (body->mesh.present)
-        return body->mesh.geometry->area[i];
+    if (body->mesh)
+        return body->geometry->area[i];
     const uint32_t columns = (uint32_t)body->cloth.grid[0],
                    rows = (uint32_t)body->cloth.grid[1];
     const uint32_t row = i / columns, column = i % columns;
@@ -162,7 +162,7 @@ bool cs_body_pin_selects(const struct cs_body *body, const struct cs_pin *pin, u
             is_named((enum cs_pin_name)pin->at, i / columns, i % columns, rows, columns)) ||
            pin->index == (int64_t)i ||
            (pin->box.present && is_inside(&pin->box, n, (size_t)first + i, x)) ||
-           (*pin->set && is_in_set(body->mesh.geometry, pin->set, i));
+           (*pin->set && is_in_set(body->geometry, pin->set, i));
 }
 
 void cs_body_pin(const struct cs_body *body, uint32_t n, uint32_t first, const double *x,
@@ -176,9 +176,9 @@ void cs_body_pin(const struct cs_body *body, uint32_t n, uint32_t first, const d
 }
 
 bool cs_body_is_closed(const struct cs_body *body) {
-    const struct cs_trimesh *mesh = body->mesh.geometry;
+    const struct cs_trimesh *mesh = body->geometry;
     double volume = 0;
-    for (uint32_t t = 0; body->mesh.present && t < mesh->n_triangles; t++) {
+    for (uint32_t t = 0; body->mesh && t < mesh->n_triangles; t++) {
         double at[3][3], normal[3];
         for (size_t k = 0; k < 9; k++)
             at[k / 3][k % 3] =
@@ -186,7 +186,7 @@ bool cs_body_is_closed(const struct cs_body *body) {
         cs_vec3_cross(at[1], at[2], normal);
         volume += cs_vec3_dot(at[0], normal);
     }
-    return body->mesh.present && !mesh->n_open && volume > 0;
+    return body->mesh && !mesh->n_open && volume > 0;
 }
 
 bool cs_holder_fault(const struct cs_scene *scene, const struct cs_holder *holder, char *text,
@@ -217,7 +217,7 @@ static void find_near(const struct cs_mesh_label *label, const char *word,
 }
 
 bool cs_body_set_fault(const struct cs_body *body, const char *set, char *text, size_t size) {
-    const struct cs_trimesh *mesh = body->mesh.present ? body->mesh.geometry : NULL;
+    const struct cs_trimesh *mesh = body->geometry;
     char near[CS_TEXT_MAX] = "";
     if (!mesh || !mesh->triangle_labels)
         return snprintf(text, size, "found the set \"%.60s\", but %s", set,
@@ -239,7 +239,7 @@ bool cs_body_pin_fault(const struct cs_body *body, const struct cs_pin *pin, cha
     const long long count = (long long)cs_body_count(body), index = (long long)pin->index;
     if (index >= count)
         return snprintf(text, size, "particle %lld does not exist (0..%lld)", index, count - 1);
-    if (body->mesh.present && pin->at >= 0)
+    if (body->mesh && pin->at >= 0)
         return snprintf(
             text, size,
             "found \"%s\", expected an index, a box or a set: a mesh has no named corners "

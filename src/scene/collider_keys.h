@@ -2,7 +2,6 @@
 #ifndef CS_COLLIDER_KEYS_H
 #define CS_COLLIDER_KEYS_H
 
-#include "scene/mesh_keys.h"
 #include "scene/scene.h"
 
 /* Keys of the collider shapes; distances are in shape_NAME.c. */
@@ -34,22 +33,33 @@ struct cs_capsule {
 };
 /* X(name, keys, text): the shapes of colliders. A shape has its keys here, and all else in its
  * own file: struct cs_table cs_NAME_keys and struct cs_shape cs_shape_NAME (collider.h). A mesh
- * has its keys with those of bodies. */
-#define CS_SHAPE_LIST(X)                                                                       \
+ * has its keys with those of bodies, in mesh_keys.h. */
+#define CS_SOLID_LIST(X)                                                                       \
     X(sphere, cs_sphere, "a sphere")                                                           \
     X(plane, cs_plane, "an infinite plane")                                                    \
     X(floor, cs_floor, "an infinite horizontal plane")                                         \
     X(box, cs_cuboid, "a box with rounded edges")                                              \
-    X(capsule, cs_capsule, "a rod with round ends")                                            \
+    X(capsule, cs_capsule, "a rod with round ends")
+#define CS_SHAPE_LIST(X)                                                                       \
+    CS_SOLID_LIST(X)                                                                           \
     X(mesh, cs_mesh_source,                                                                    \
       "triangles, in contact with points, edges and triangles; for contact.law force")
 
+struct cs_mesh_source;
+struct cs_trimesh;
+struct cs_vertex_paths;
+
 /* An obstacle, at rest or moved by events, and by key frames if it is a mesh. */
 struct cs_collider {
-#define X(name, keys, text) struct keys name; /* exactly one is present */
-    CS_SHAPE_LIST(X)
+#define X(name, keys, text) struct keys name; /* one of these is present, or the mesh */
+    CS_SOLID_LIST(X)
 #undef X
-    double friction;   /* Coulomb coefficient */
+    struct cs_mesh_source *mesh; /* NULL: none */
+    /* of the mesh, not in the tables: made by the reader, owned by the scene's arena; constant
+     */
+    const struct cs_trimesh *geometry;
+    const struct cs_vertex_paths *paths; /* NULL without key frames */
+    double friction;                     /* Coulomb coefficient */
     double absorption; /* fraction of the inward normal velocity removed; < 0: restitution */
     double thickness;  /* m, layer in front of the surface */
     double colour[3];  /* linear RGB */
@@ -68,9 +78,9 @@ static inline const struct cs_shape *cs_collider_shape(const struct cs_collider 
 #define X(name, keys, text)                                                                    \
     if (collider->name.present)                                                                \
         return &cs_shape_##name;
-    CS_SHAPE_LIST(X)
+    CS_SOLID_LIST(X)
 #undef X
-    return NULL;
+    return collider->mesh ? &cs_shape_mesh : NULL;
 }
 
 #endif

@@ -211,15 +211,15 @@ static enum cs_status check_path(const struct look *at, const char *key,
 static enum cs_status check_grab(const struct look *at, const struct cs_grab *grab) {
     const bool spins = cs_check_length(grab->spin, 3) > 0;
     char fault[160];
-    if (grab->to.present && (grab->path.n || spins))
+    if (grab->to && (grab->path.n || spins))
         return refuse_event(at, ".grab.to",
                             "found %s too, but the collider leads; expected either",
                             grab->path.n ? "path" : "spin");
-    if (grab->to.present && cs_holder_fault(at->scene, &grab->to, fault, sizeof fault))
+    if (grab->to && cs_holder_fault(at->scene, grab->to, fault, sizeof fault))
         return refuse_event(at, ".grab.to", "%s", fault);
     if (!isnan(grab->centre[0]) && !spins)
         return refuse_event(at, ".grab.centre", "without spin it has no effect");
-    if (grab->path.n == 0 && !spins && !grab->to.present)
+    if (grab->path.n == 0 && !spins && !grab->to)
         return refuse_event(at, ".grab.path",
                             "found no point, expected at least one, or spin, or to");
     return check_path(at, "grab", &grab->path, grab->relative)

@@ -140,16 +140,18 @@ static const struct cs_option *descend(struct walk *walk) {
         uint32_t index = 0;
         if (!row)
             return NULL;
-        walk->object = cs_option_field(row, walk->object);
+        // a table that stands apart may be absent: the way ends without a number
+        walk->object = walk->object ? cs_option_field(row, walk->object) : NULL;
         if (row->type == CS_LIST) {
-            const struct cs_list *list = (const void *)walk->object;
+            const struct cs_list none = {0},
+                                 *list = walk->object ? (void *)walk->object : &none;
             if (!next_index(walk, list->n, &index))
                 return NULL;
             walk->object = (char *)list->items + index * row->table->size;
         } else if (cs_value_kind_of(row)->several) {
             if (!next_index(walk, row->count, &index))
                 return NULL;
-            walk->object += index * cs_value_kind_of(row)->size;
+            walk->object += walk->object ? index * cs_value_kind_of(row)->size : 0;
         }
         /* the end of the way down: the path must end here too */
         if (!row->table) {
@@ -223,7 +225,7 @@ static enum cs_status check_springs(const struct walk *walk, const struct cs_bod
     const bool damping = !strcmp(walk->plain, "bodies.springs.damping");
     const char *why = body->elastic.present             ? "elastic replaces the springs"
                       : cs_scene_springs_left_out(body) ? "shape_matching disables the springs"
-                      : shear && body->mesh.present     ? "a mesh has none"
+                      : shear && body->mesh             ? "a mesh has none"
                       : !damping && value <= 0          ? "it is 0: there are no such springs"
                                                         : NULL;
     return why ? cs_fail(walk->error, CS_ERR_SCENE, "%.120s cannot change: %s", walk->path, why)

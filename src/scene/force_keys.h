@@ -2,7 +2,6 @@
 #ifndef CS_FORCE_KEYS_H
 #define CS_FORCE_KEYS_H
 
-#include "scene/mesh_keys.h"
 #include "scene/scene.h"
 
 #include <math.h>
@@ -90,16 +89,17 @@ static inline uint32_t cs_path_starts_at(const struct cs_list *path, double t) {
     return path->n && first->at > t - 1e-6 && first->at < t + 1e-6;
 }
 enum cs_motion { CS_MOTION_LINEAR, CS_MOTION_SMOOTH };
+struct cs_holder;
 /* Holds particles and moves them along a path. */
 struct cs_grab {
     bool present;
     struct cs_event_target target;
-    struct cs_list path; /* struct cs_path_point, at least one */
-    int32_t motion;      /* enum cs_motion */
-    bool relative;       /* points are shifts from where it was grabbed */
-    struct cs_holder to; /* instead of a path */
-    double spin[3];      /* rad/s, about the centre, which follows the path */
-    double centre[3];    /* m, at the beginning; first component NAN: the particles' mean */
+    struct cs_list path;  /* struct cs_path_point, at least one */
+    int32_t motion;       /* enum cs_motion */
+    bool relative;        /* points are shifts from where it was grabbed */
+    struct cs_holder *to; /* instead of a path; NULL: none */
+    double spin[3];       /* rad/s, about the centre, which follows the path */
+    double centre[3];     /* m, at the beginning; first component NAN: the particles' mean */
 };
 /* Pins particles, or releases them. */
 struct cs_pin_change {

@@ -5,6 +5,7 @@
 #include "scene/table_rows.h"
 
 #include "mesh/trimesh.h"
+#include "mesh/vertex_paths.h"
 
 static const double zero3[3] = {0, 0, 0};
 static const double no_turn[4] = {0, 0, 0, 1};
@@ -27,7 +28,7 @@ static const struct cs_option holder_rows[] = {
 };
 
 const struct cs_table cs_holder_table = {ROWS(holder_rows), .size = sizeof(struct cs_holder),
-                                         .optional = true};
+                                         .optional = true, .apart = true};
 
 const char *const cs_mesh_shape_names[] = {"box", "sphere", "torus", "limbs", NULL};
 static const double one3[3] = {1, 1, 1};
@@ -86,6 +87,7 @@ const struct cs_table cs_mesh_table = {.rows = mesh_rows + 1,
                                        .n = N_MESH_ROWS - 1,
                                        .size = sizeof(struct cs_mesh_source),
                                        .optional = true,
+                                       .apart = true,
                                        .one_of = true,
                                        .n_always_optional = 1};
 /* events and key frames move a collider */
@@ -93,5 +95,6 @@ const struct cs_table cs_mesh_keys = {.rows = mesh_rows,
                                       .n = N_MESH_ROWS - 2,
                                       .size = sizeof(struct cs_mesh_source),
                                       .optional = true,
+                                      .apart = true,
                                       .one_of = true,
                                       .n_always_optional = 2};

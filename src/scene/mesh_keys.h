@@ -1,22 +1,18 @@
-/* mesh_keys.h - keys that bodies, colliders and events share: meshes, placements, holders. */
+/* mesh_keys.h - keys of the meshes of bodies and colliders, and of their key frames. */
 #ifndef CS_MESH_KEYS_H
 #define CS_MESH_KEYS_H
 
-#include "mesh/vertex_paths.h"
+#include "scene/body_keys.h"
 
-#include <clothsim/option.h>
-
-/* A rigid placement x = R p + translate; R from the matrix, or from the quaternion. */
-struct cs_pose {
-    double translate[3]; /* m */
-    double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
-    double matrix[9];    /* rows of a rotation matrix; first element NAN: absent */
-};
-
-/* A collider that carries particles along. */
-struct cs_holder {
+/* Positions of the vertices at equal intervals of time, in files. */
+struct cs_key_frames {
     bool present;
-    int64_t collider; /* -1: not given, refused */
+    char file[CS_TEXT_MAX];  /* PC2, NPZ, or OBJ with # for the digits of a number */
+    char array[CS_TEXT_MAX]; /* of an NPZ; "": positions */
+    int64_t first, count;    /* of OBJ files; count 0: not given */
+    double rate;             /* 1/s */
+    double start;            /* s, time of the first key frame */
+    int32_t end;             /* enum cs_paths_end */
 };
 
 enum cs_mesh_unit { CS_MESH_M, CS_MESH_CM, CS_MESH_MM, CS_MESH_INCH, CS_MESH_FOOT };
@@ -37,9 +33,6 @@ struct cs_mesh_source {
     double velocity[3];              /* m/s, of every free particle at time 0 */
     double spin[3];                  /* rad/s, about place.translate */
     struct cs_key_frames key_frames; /* of a collider */
-    /* not in the tables: made by the reader, owned by the scene's arena; shared and constant */
-    const struct cs_trimesh *geometry;
-    const struct cs_vertex_paths *paths; /* NULL without key frames */
 };
 
 #endif

@@ -9,6 +9,7 @@
 #include "scene/contact_keys.h"
 #include "scene/event_key.h"
 #include "scene/force_keys.h"
+#include "scene/mesh_keys.h"
 #include "scene/picture_keys.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ static enum cs_status check_pins(const struct cs_check *check, const struct cs_s
         if (cs_body_pin_fault(of, pins + p, fault, sizeof fault))
             return cs_check_refuse(check, path, "%s", fault);
         snprintf(path, sizeof path, "%s.pins[%u].to", body, p);
-        if (pins[p].to.present && cs_holder_fault(scene, &pins[p].to, fault, sizeof fault))
+        if (pins[p].to && cs_holder_fault(scene, pins[p].to, fault, sizeof fault))
             return cs_check_refuse(check, path, "%s", fault);
     }
     return CS_OK;
@@ -37,7 +38,7 @@ static enum cs_status check_mass(const struct cs_check *check, const char *body,
     char path[128];
     const struct cs_spring_law *law = &of->springs;
     const int64_t *grid = of->cloth.grid;
-    const bool stretch = law->stretch > 0 && (of->mesh.present || grid[0] > 1 || grid[1] > 1);
+    const bool stretch = law->stretch > 0 && (of->mesh || grid[0] > 1 || grid[1] > 1);
     const bool shear = law->shear > 0 && grid[0] > 1 && grid[1] > 1;
     snprintf(path, sizeof path, "%s.mass.degree", body);
     if (!isnan(of->mass.degree) && (cs_scene_springs_left_out(of) || (!stretch && !shear)))
@@ -65,7 +66,7 @@ static enum cs_status check_network(const struct cs_check *check, const char *bo
                                     const struct cs_body *of) {
     char path[128];
     snprintf(path, sizeof path, "%s.network", body);
-    if (of->network.present && !of->mesh.present)
+    if (of->network.present && !of->mesh)
         return cs_check_refuse(check, path, "a cloth has no inside, expected a closed mesh");
     return CS_OK;
 }
@@ -135,13 +136,13 @@ static enum cs_status check_body(const struct cs_check *check, const struct cs_s
                                  uint32_t b, struct cs_body *body) {
     char path[64];
     snprintf(path, sizeof path, "bodies[%u]", b);
-    if (body->cloth.present == body->mesh.present)
+    if (body->cloth.present == (body->mesh != NULL))
         return cs_check_refuse(check, path, "found %s, expected cloth or mesh",
                                body->cloth.present ? "cloth and mesh" : "no shape");
     if (check_elastic(check, path, body) || check_network(check, path, body) ||
         check_matching(check, path, body) ||
         cs_check_pose(check, path, "cloth", &body->cloth.place) ||
-        cs_check_pose(check, path, "mesh", &body->mesh.place) ||
+        (body->mesh && cs_check_pose(check, path, "mesh", &body->mesh->place)) ||
         check_mass(check, path, body) || check_pins(check, scene, path, body) ||
         check_pressure(check, path, body) ||
         check_texture(check, path, body->material.texture) || cs_check_faces(check, path, body))
@@ -230,7 +231,7 @@ static enum cs_status check_meetings(const struct cs_check *check,
         if (cs_scene_bodies(scene)[b].self_contact)
             snprintf(path, sizeof path, "bodies[%u].self_contact", b);
     for (uint32_t c = scene->colliders.n; c--;)
-        if (cs_scene_colliders(scene)[c].mesh.present)
+        if (cs_scene_colliders(scene)[c].mesh)
             snprintf(path, sizeof path, "colliders[%u].mesh", c);
     return cs_check_refuse(
         check, path,
@@ -260,7 +261,7 @@ static enum cs_status check_sticking(const struct cs_check *check,
         if (pairs[p].friction > 0)
             snprintf(path, sizeof path, "pairs.list[%u].friction", p);
     for (uint32_t c = scene->colliders.n; c--;)
-        if (cs_scene_colliders(scene)[c].mesh.present) {
+        if (cs_scene_colliders(scene)[c].mesh) {
             char key[64];
             snprintf(key, sizeof key, "colliders[%u].friction", c);
             if (cs_event_key_acts(scene, cs_scene_colliders(scene)[c].friction, key))

@@ -57,7 +57,7 @@ enum cs_status cs_particles_check(const struct cs_check *check, const char *path
         snprintf(place, sizeof place, "%s.particles[%u]", path, p);
         if (cs_body_pin_fault(owner, pins + p, fault, sizeof fault))
             return cs_check_refuse(check, place, "%s: %s", name, fault);
-        if (pins[p].to.present)
+        if (pins[p].to)
             return cs_check_refuse(check, place,
                                    "found to, which only pins of a body and a grab have");
         // in a seam each counts once: no order would be left
@@ -100,9 +100,10 @@ static enum cs_status check_collider(const struct look *look, const struct cs_se
         return cs_check_refuse(look->check, path, "found body too, expected either");
     if (cs_holder_fault(look->scene, &holder, fault, sizeof fault))
         return cs_check_refuse(look->check, path, "%s", fault);
-    const struct cs_body mesh = {.mesh = cs_scene_colliders(look->scene)[holder.collider].mesh};
+    const struct cs_collider *collider = cs_scene_colliders(look->scene) + holder.collider;
+    const struct cs_body mesh = {.mesh = collider->mesh, .geometry = collider->geometry};
     snprintf(path, sizeof path, "seams[%u].to.particles", look->number);
-    if (!mesh.mesh.present && particles->n)
+    if (!mesh.mesh && particles->n)
         return cs_check_refuse(look->check, path,
                                "collider %u is no mesh and has no vertices, expected none: its "
                                "nearest points",

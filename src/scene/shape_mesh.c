@@ -11,22 +11,23 @@
 #include "scene/body_particles.h"
 #include "scene/collider.h"
 #include "scene/collider_keys.h"
+#include "scene/mesh_keys.h"
 
 #include <math.h>
 #include <string.h>
 
 void cs_collider_mesh_vertex(const struct cs_posed_collider *collider, uint32_t i,
                              double own[3]) {
-    const struct cs_mesh_source *mesh = &collider->collider->mesh;
-    const struct cs_trimesh *geometry = mesh->geometry;
-    for (size_t c = 0; c < 3 && !mesh->paths; c++)
+    const struct cs_trimesh *geometry = collider->collider->geometry;
+    const struct cs_vertex_paths *paths = collider->collider->paths;
+    for (size_t c = 0; c < 3 && !paths; c++)
         own[c] = geometry->positions[c * geometry->n + i];
-    if (mesh->paths)
-        cs_vertex_paths_sum(mesh->paths, &collider->path, collider->path.position, i, own);
+    if (paths)
+        cs_vertex_paths_sum(paths, &collider->path, collider->path.position, i, own);
 }
 
 void cs_collider_mesh_vertices(const struct cs_posed_collider *collider, double *positions) {
-    const uint32_t n = collider->collider->mesh.geometry->n;
+    const uint32_t n = collider->collider->geometry->n;
     for (uint32_t i = 0; i < n; i++) {
         double own[3];
         cs_collider_mesh_vertex(collider, i, own);
@@ -37,11 +38,11 @@ void cs_collider_mesh_vertices(const struct cs_posed_collider *collider, double 
 
 static enum cs_status check(const struct cs_check *at, const char *path,
                             struct cs_collider *collider) {
-    return cs_check_pose(at, path, "mesh", &collider->mesh.place);
+    return cs_check_pose(at, path, "mesh", &collider->mesh->place);
 }
 
 static void pose(const struct cs_collider *collider, struct cs_posed_collider *out) {
-    const struct cs_mesh_source *mesh = &collider->mesh;
+    const struct cs_mesh_source *mesh = collider->mesh;
     double r[9];
     memcpy(out->centre, mesh->place.translate, sizeof out->centre);
     cs_pose_rotation(&mesh->place, r);
@@ -67,7 +68,7 @@ static double smooth(const struct cs_posed_collider *mesh, const double p[3], do
 /* Returns true if a line in the mesh's own frame goes through triangle t, edges included. */
 static bool meets_triangle(const struct cs_posed_collider *collider, uint32_t t,
                            const double from[3], const double way[3], double share) {
-    const uint32_t *vertices = collider->collider->mesh.geometry->triangles + 3 * (size_t)t;
+    const uint32_t *vertices = collider->collider->geometry->triangles + 3 * (size_t)t;
     double corners[3][3], u[3], v[3], to[3], across[3], turned[3];
     for (size_t k = 0; k < 3; k++)
         cs_collider_mesh_vertex(collider, vertices[k], corners[k]);
@@ -87,7 +88,7 @@ static bool meets_triangle(const struct cs_posed_collider *collider, uint32_t t,
 /* Tests the triangles one by one until one is met. */
 static bool meets_line(const struct cs_posed_collider *collider, const double from[3],
                        const double way[3], double share) {
-    const struct cs_trimesh *mesh = collider->collider->mesh.geometry;
+    const struct cs_trimesh *mesh = collider->collider->geometry;
     double own[3], own_way[3];
     bool meets = false;
     cs_collider_to_local(collider, from, own);
@@ -102,8 +103,8 @@ static bool meets_line(const struct cs_posed_collider *collider, const double fr
 static enum cs_status triangles(const struct cs_posed_collider *collider,
                                 struct cs_trimesh *mesh, struct cs_arena *arena,
                                 struct cs_error *error) {
-    *mesh = *collider->collider->mesh.geometry;
-    if (!collider->collider->mesh.paths)
+    *mesh = *collider->collider->geometry;
+    if (!collider->collider->paths)
         return CS_OK;
     mesh->positions = cs_arena_alloc_array(arena, mesh->n, 3 * sizeof *mesh->positions, error);
     if (mesh->positions)

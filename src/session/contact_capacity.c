@@ -17,7 +17,7 @@ static bool params_of(const struct cs_system *system, uint32_t a, uint32_t b,
     const uint32_t n_bodies = system->scene->bodies.n;
     double friction;
     *out = (struct cs_contact_capacity){.a = a, .b = b};
-    if (b >= n_bodies && !cs_scene_colliders(system->scene)[b - n_bodies].mesh.present) {
+    if (b >= n_bodies && !cs_scene_colliders(system->scene)[b - n_bodies].mesh) {
         if (!system->collider_params)
             return false;
         out->range = system->collider_params[b - n_bodies].range;

@@ -196,7 +196,7 @@ void cs_export_mesh_pose_colliders(struct cs_export_mesh *mesh, const struct cs_
         cs_posed_collider_at(system, mesh->items[item], t, &collider);
         for (size_t i = mesh->first_point[item]; i < mesh->first_point[item + 1]; i++) {
             double place[3];
-            if (collider.collider->mesh.paths)
+            if (collider.collider->paths)
                 cs_collider_mesh_vertex(&collider, (uint32_t)(i - mesh->first_point[item]),
                                         mesh->local_positions + 3 * i);
             cs_collider_to_world(&collider, mesh->local_positions + 3 * i, place);

@@ -7,6 +7,7 @@
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/file/key_frames_read.h"
+#include "scene/mesh_keys.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,14 +39,14 @@ void cs_scene_each_file(const struct cs_scene *scene,
         take(ctx, scene->path, "the scene");
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         const struct cs_body *body = cs_scene_bodies(scene) + b;
-        add_referenced_file(&walk, body->mesh.file, "a mesh");
+        add_referenced_file(&walk, body->mesh ? body->mesh->file : "", "a mesh");
         add_referenced_file(&walk, body->material.texture, "a texture");
     }
     for (uint32_t c = 0; c < scene->colliders.n; c++) {
-        const struct cs_mesh_source *mesh = &cs_scene_colliders(scene)[c].mesh;
+        const struct cs_mesh_source *mesh = cs_scene_colliders(scene)[c].mesh;
         char file[CS_TEXT_MAX];
-        add_referenced_file(&walk, mesh->file, "a mesh");
-        for (uint32_t k = 0; cs_key_frames_file(&mesh->key_frames, k, file); k++)
+        add_referenced_file(&walk, mesh ? mesh->file : "", "a mesh");
+        for (uint32_t k = 0; mesh && cs_key_frames_file(&mesh->key_frames, k, file); k++)
             add_referenced_file(&walk, file, "key frames");
     }
 }

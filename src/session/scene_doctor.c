@@ -12,6 +12,7 @@
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
+#include "scene/mesh_keys.h"
 #include "session/scene_findings.h"
 
 #include <math.h>
@@ -302,9 +303,9 @@ static void check_gaps(const struct cs_system *system, struct cs_text *out) {
 /* Changes by the reading of meshes; several pieces of a mesh that nothing joins. */
 static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings *out) {
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
-        const struct cs_mesh_source *source = &cs_scene_bodies(scene)[b].mesh;
-        const struct cs_trimesh *mesh = source->geometry;
-        if (!source->present || !mesh->mends)
+        const struct cs_mesh_source *source = cs_scene_bodies(scene)[b].mesh;
+        const struct cs_trimesh *mesh = cs_scene_bodies(scene)[b].geometry;
+        if (!source || !mesh->mends)
             continue;
         if (*mesh->mends)
             cs_text_add(&out->warnings, "bodies[%u].mesh.file: %s: %s\n", b, source->file,

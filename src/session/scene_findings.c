@@ -83,7 +83,7 @@ static bool has_surface(const struct cs_scene *scene, uint32_t k) {
     double friction;
     bool any = false;
     for (uint32_t b = 0; b < scene->bodies.n + scene->colliders.n; b++)
-        any = any || ((b < scene->bodies.n || cs_scene_collider_at(scene, b)->mesh.present) &&
+        any = any || ((b < scene->bodies.n || cs_scene_collider_at(scene, b)->mesh) &&
                       cs_scene_bodies_collide(scene, k, b, &friction));
     return is_force(scene) && any;
 }
@@ -238,7 +238,7 @@ static void walk_row(const struct cs_scene *scene, const struct cs_option *row,
     // events and paths may be many
     if (row->table && always_acts(at.key))
         return;
-    if (row->type == CS_TABLE)
+    if (row->type == CS_TABLE && field)
         walk(scene, row->table, field, &at, out);
     for (uint32_t k = 0; row->type == CS_LIST && k < list->n; k++) {
         struct place item = at;
@@ -310,8 +310,7 @@ double cs_findings_box(const struct cs_system *system, uint32_t b, double low[3]
 
 /* m, of a collider without a plane: the diagonal of its box. */
 static double size_of(const struct cs_posed_collider *collider) {
-    const struct cs_trimesh *mesh =
-        collider->collider->mesh.present ? collider->collider->mesh.geometry : NULL;
+    const struct cs_trimesh *mesh = collider->collider->geometry;
     double sides[3], low[3] = {0}, high[3] = {0};
     if (mesh)
         cs_findings_box_of(mesh->positions, mesh->n, mesh->n, low, high);

@@ -272,7 +272,7 @@ static enum cs_status open_twin(const struct cs_session *session, struct cs_sess
     for (uint32_t b = 0; overrides && b < session->scene.bodies.n; b++) {
         const int64_t *grid = bodies[b].cloth.grid;
         char path[64], value[64];
-        if (bodies[b].mesh.present)
+        if (bodies[b].mesh)
             continue;
         snprintf(path, sizeof path, "bodies[%u].cloth.grid", b);
         snprintf(value, sizeof value, "[%d,%d]", (int)fmin((double)grid[0], TWIN_SIDE),

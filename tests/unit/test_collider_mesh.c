@@ -3,6 +3,7 @@
 #include "draw/collider_mesh.h"
 #include "mesh/trimesh.h"
 #include "scene/collider_keys.h"
+#include "scene/mesh_keys.h"
 
 #include "unit.h"
 
@@ -219,12 +220,10 @@ TEST(a_mesh_is_as_it_is) {
     cs_trimesh_make(&mesh, CS_MESH_BOX, 3, &arena, &error);
     cs_trimesh_finish(&mesh, "box", NULL, &arena, &error);
     UNIT_ASSERT_OK(&error);
-    struct cs_collider collider = {.mesh = {.present = true,
-                                            .place = {.translate = {3, -1, 2},
-                                                      .rotate = {0.6, 0, 0, 0.8},
-                                                      .matrix = {(double)NAN}},
-                                            .geometry = &mesh},
-                                   .visible = true};
+    struct cs_mesh_source source = {
+        .present = true,
+        .place = {{3, -1, 2}, .rotate = {0.6, 0, 0, 0.8}, .matrix = {(double)NAN}}};
+    struct cs_collider collider = {.mesh = &source, .geometry = &mesh, .visible = true};
     struct cs_scene of_mesh = {.colliders = {&collider, 1}};
     struct cs_posed_collider of;
     cs_posed_collider_at(&(struct cs_system){.scene = &of_mesh}, 0, 0, &of);
@@ -237,7 +236,7 @@ TEST(a_mesh_is_as_it_is) {
         for (int k = 0; k < 3; k++)
             for (int c = 0; c < 3; c++)
                 p[k][c] = (double)vertices[t + (uint32_t)k].position[c] -
-                          collider.mesh.place.translate[c];
+                          collider.mesh->place.translate[c];
         cs_vec3_cross(p[1], p[2], cross);
         volume += cs_vec3_dot(p[0], cross) / 6;
         // a face of the box is half a side away from its middle, along the normal

@@ -1,7 +1,9 @@
 /* Key frames are read whole from each format; bad files are refused with their name. */
+#include "mesh/vertex_paths.h"
 #include "scene/file/key_frames_read.h"
 
 #include "base/serialise.h"
+#include "scene/collider_keys.h"
 #include "scene/mesh_keys.h"
 #include "unit.h"
 
@@ -96,12 +98,12 @@ static void read_file(const char *name, const struct bytes *file, const char *ar
                       struct cs_vertex_paths *paths, struct cs_arena *arena,
                       struct cs_error *error) {
     struct cs_mesh_source source = {.scale = {1, 2, 4},
-                                    .key_frames = {.present = true, .rate = 4, .start = 0.5},
-                                    .geometry = &triangle};
+                                    .key_frames = {.present = true, .rate = 4, .start = 0.5}};
+    const struct cs_collider collider = {.mesh = &source, .geometry = &triangle};
     snprintf(source.key_frames.file, sizeof source.key_frames.file, "%s", name);
     snprintf(source.key_frames.array, sizeof source.key_frames.array, "%s", array);
     *error = (struct cs_error){0};
-    cs_key_frames_read_bytes((const char *)file->at, file->n, &source, paths, arena, error);
+    cs_key_frames_read_bytes((const char *)file->at, file->n, &collider, paths, arena, error);
 }
 
 static void check_numbers(const char *name, const struct bytes *file) {
@@ -218,11 +220,11 @@ static void read_here(const char *file, int64_t count, struct cs_vertex_paths *p
     static uint32_t corners[3] = {0, 1, 2};
     const struct cs_trimesh mesh = {.n = N, .n_triangles = 1, .triangles = corners};
     struct cs_mesh_source source = {.scale = {1, 1, 1},
-                                    .key_frames = {true, "", "", 8, count, 24, 0, 0},
-                                    .geometry = &mesh};
+                                    .key_frames = {true, "", "", 8, count, 24, 0, 0}};
+    const struct cs_collider collider = {.mesh = &source, .geometry = &mesh};
     snprintf(source.key_frames.file, sizeof source.key_frames.file, "%s", file);
     *error = (struct cs_error){0};
-    cs_key_frames_read(".", &source, paths, arena, error);
+    cs_key_frames_read(".", &collider, paths, arena, error);
 }
 
 TEST(sequences_are_read) {

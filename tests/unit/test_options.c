@@ -102,6 +102,21 @@ TEST(struct_elsewhere_is_filled) {
     ck_assert(cs_option_is_set(&row, &holder));
 }
 
+/* An optional one is nowhere until it is read. */
+TEST(absent_struct_elsewhere_is_null) {
+    static const struct cs_table optional = {ROWS(inner_rows), .size = sizeof(struct inner),
+                                             .optional = true, .apart = true};
+    static const struct cs_option row = {
+        .name = "apart", .type = CS_TABLE, .count = 1, .table = &optional};
+    static const struct cs_table holder_table = {.rows = &row, .n = 1, .size = sizeof(void *)};
+    struct inner inner, *holder = &inner;
+    memset(&inner, 0x5a, sizeof inner);
+    cs_options_default(&holder_table, &holder);
+    ck_assert_ptr_null(holder);
+    ck_assert(!cs_option_is_set(&row, &holder) && cs_option_is_default(&row, &holder));
+    ck_assert_int_eq(*(const char *)&inner, 0x5a);
+}
+
 /* over whatever was in the struct before */
 TEST(every_field_gets_its_default) {
     const struct all all = defaults();

@@ -6,6 +6,7 @@
 #include "scene/body_keys.h"
 #include "scene/collider_keys.h"
 #include "scene/file/scene_read.h"
+#include "scene/mesh_keys.h"
 #include "unit.h"
 
 #include <math.h>
@@ -36,6 +37,11 @@ static void fill(const struct cs_table *table, void *object) {
         const struct cs_option *row = table->rows + r;
         void *field = cs_option_field(row, object);
         if (row->type == CS_TABLE) {
+            if (!field) {
+                *(void **)(void *)((char *)object + row->offset) = field =
+                    calloc(1, row->table->size);
+                cs_options_default(row->table, field);
+            }
             if (row->table->optional)
                 *(bool *)field = true;
             fill(row->table, field);
@@ -54,6 +60,8 @@ static void empty(const struct cs_table *table, void *object) {
         void *field = cs_option_field(row, object);
         if (row->type == CS_TABLE)
             empty(row->table, field);
+        if (row->type == CS_TABLE && row->table->apart && row->table->optional)
+            free(field);
         if (row->type == CS_LIST) {
             empty(row->table, ((struct cs_list *)field)->items);
             free(((struct cs_list *)field)->items);
@@ -168,16 +176,16 @@ TEST(every_key_counts) {
     cs_scene_init(&walk.scene, &error);
     UNIT_ASSERT_OK(&error);
     fill(&cs_scene_table, &walk.scene);
-    cs_scene_bodies(&walk.scene)->mesh.geometry = &mesh;
-    cs_scene_colliders(&walk.scene)->mesh.geometry = &mesh;
+    cs_scene_bodies(&walk.scene)->geometry = &mesh;
+    cs_scene_colliders(&walk.scene)->geometry = &mesh;
     expect_another(&walk, "none");
     change_all(&walk, &cs_scene_table, &walk.scene);
     strcpy(walk.scene.integrator, "rk4");
     expect_another(&walk, "integrator");
     // the bytes of a mesh file, under the same name
-    strcpy(cs_scene_bodies(&walk.scene)->mesh.file, "a.obj");
+    strcpy(cs_scene_bodies(&walk.scene)->mesh->file, "a.obj");
     expect_another(&walk, "mesh file");
-    strcpy(cs_scene_colliders(&walk.scene)->mesh.file, "a.obj");
+    strcpy(cs_scene_colliders(&walk.scene)->mesh->file, "a.obj");
     expect_another(&walk, "mesh file of a collider");
     strcpy(mesh.file_hash, "4567");
     expect_another(&walk, "bytes of a mesh file");

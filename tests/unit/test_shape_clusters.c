@@ -76,7 +76,7 @@ TEST(every_particle_has_a_part) {
                 ck_assert_uint_lt(parts->items[i], 1024);
                 n += seen[parts->items[i]]++ == 0;
             }
-        ck_assert_uint_eq(n, cs_scene_bodies(&scene)->mesh.geometry->n);
+        ck_assert_uint_eq(n, cs_scene_bodies(&scene)->geometry->n);
         for (uint32_t k = 0; k < parts->n; k++)
             ck_assert_uint_ge(parts->begin[k + 1] - parts->begin[k], n / clusters);
         cs_scene_finish(&scene);

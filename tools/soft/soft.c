@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/install_paths.h"
+#include "scene/mesh_keys.h"
 #include "session/frame_picture.h"
 #include "session/session.h"
 #include "study/compare/timing_rounds.h"
@@ -164,7 +165,7 @@ static enum cs_status append_soft_row(struct cs_soft *soft, enum cs_soft_series 
 
 /* True if the body is a mesh of limbs with a network of springs: its detail can be varied. */
 static bool has_limbs(const struct cs_body *body) {
-    return body->mesh.present && body->mesh.shape == CS_MESH_LIMBS && body->network.present;
+    return body->mesh && body->mesh->shape == CS_MESH_LIMBS && body->network.present;
 }
 
 enum cs_status cs_soft_check(const struct cs_soft *soft, struct cs_error *error) {

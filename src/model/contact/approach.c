@@ -69,8 +69,7 @@ static void set_collider(const struct cs_system *system, uint32_t collider,
                          struct surface *out) {
     struct cs_posed_collider at;
     cs_posed_collider_at(system, collider, 0, &at);
-    const struct cs_trimesh *mesh =
-        at.collider->mesh.present ? at.collider->mesh.geometry : NULL;
+    const struct cs_trimesh *mesh = at.collider->mesh ? at.collider->geometry : NULL;
     clear(out);
     out->endless = cs_shape_is_endless(at.shape);
     memcpy(out->point, at.centre, sizeof out->point);
@@ -147,7 +146,7 @@ static void add_paths(const struct cs_scene *scene, struct cs_approach *approach
         }
     }
     for (uint32_t c = 0; c < scene->colliders.n; c++) {
-        const struct cs_vertex_paths *paths = cs_scene_colliders(scene)[c].mesh.paths;
+        const struct cs_vertex_paths *paths = cs_scene_colliders(scene)[c].paths;
         approach->surfaces[approach->n_bodies + c].path_speed += paths ? paths->speed : 0;
     }
 }

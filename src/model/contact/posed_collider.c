@@ -103,8 +103,8 @@ static void pose_at(const struct cs_collider *collider, const struct cs_collider
     memcpy(out->rotation_centre, out->centre, sizeof out->rotation_centre);
     if (motion)
         move(out, motion, t);
-    if (collider->mesh.paths)
-        out->path = cs_vertex_paths_weights(collider->mesh.paths, t);
+    if (collider->paths)
+        out->path = cs_vertex_paths_weights(collider->paths, t);
 }
 
 void cs_posed_collider_at(const struct cs_system *system, uint32_t k, double t,
@@ -145,7 +145,7 @@ void cs_posed_collider_velocity(const struct cs_posed_collider *collider, const 
 
 void cs_posed_collider_vertex(const struct cs_posed_collider *collider, uint32_t i, double p[3],
                               double v[3]) {
-    const struct cs_vertex_paths *paths = collider->collider->mesh.paths;
+    const struct cs_vertex_paths *paths = collider->collider->paths;
     double own[3], own_velocity[3], turned[3];
     cs_collider_mesh_vertex(collider, i, own);
     for (int c = 0; c < 3; c++)

@@ -24,7 +24,7 @@ bool cs_rebounds_possible(const struct cs_scene *scene) {
     if (!cs_scene_contact_is_force(scene))
         return false;
     for (uint32_t c = 0; c < scene->colliders.n; c++)
-        if (!cs_scene_colliders(scene)[c].mesh.present)
+        if (!cs_scene_colliders(scene)[c].mesh)
             return true;
     return false;
 }
@@ -309,7 +309,7 @@ void cs_rebounds_find(const struct cs_system *system, double t, double h, const 
     }
     memset(rebounds->rows, 0, n / CS_COLLIDER_ROW + 1);
     for (uint32_t c = 0; c < system->scene->colliders.n; c++) {
-        if (cs_scene_colliders(system->scene)[c].mesh.present)
+        if (cs_scene_colliders(system->scene)[c].mesh)
             continue;
         struct search search = {
             .system = system, .collider = c, .h = h, .x = x, .v = v, .f = f};

@@ -295,8 +295,8 @@ enum cs_status cs_bendings_build(struct cs_system *system, struct cs_error *erro
             .count = system->bodies[b].count,
             .damped = cs_event_key_acts(system->scene, bodies[b].elastic.bending.damping,
                                         "bodies.elastic.bending.damping")};
-        if (bodies[b].mesh.present)
-            build_mesh(bending, bodies[b].mesh.geometry, arena, error);
+        if (bodies[b].mesh)
+            build_mesh(bending, bodies[b].geometry, arena, error);
         else
             build_grid(bending, &bodies[b].cloth, arena, error);
     }

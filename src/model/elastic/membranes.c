@@ -154,8 +154,8 @@ enum cs_status cs_membranes_build(struct cs_system *system, struct cs_error *err
                                          .first = system->bodies[b].first,
                                          .count = system->bodies[b].count,
                                          .begin = membranes->n_triangles};
-        if (bodies[b].mesh.present ? build_mesh(membrane, bodies[b].mesh.geometry, arena, error)
-                                   : build_grid(membrane, &bodies[b].cloth, arena, error))
+        if (bodies[b].mesh ? build_mesh(membrane, bodies[b].geometry, arena, error)
+                           : build_grid(membrane, &bodies[b].cloth, arena, error))
             break;
         membranes->n_triangles += membrane->n;
         membrane->shortest = shortest_of(membrane);

@@ -30,7 +30,7 @@ static void set_normal(struct cs_carrier *at) {
 
 void cs_carrier_at(const struct cs_posed_collider *collider, uint32_t triangle,
                    struct cs_carrier *out) {
-    const uint32_t *at = collider->collider->mesh.geometry->triangles + 3 * (size_t)triangle;
+    const uint32_t *at = collider->collider->geometry->triangles + 3 * (size_t)triangle;
     for (int k = 0; k < 3; k++)
         cs_posed_collider_vertex(collider, at[k], out->place[k], out->rate[k]);
     for (int k = 1; k < 3; k++)
@@ -107,7 +107,7 @@ struct sewing {
 
 /* Sets p to the nearest point of the collider. */
 static void find_nearest(const struct sewing *sewing, double p[3]) {
-    const struct cs_trimesh *mesh = sewing->mesh.mesh.geometry;
+    const struct cs_trimesh *mesh = sewing->mesh.geometry;
     double normal[3], from[3], least = HUGE_VAL;
     memcpy(from, p, sizeof from);
     if (!mesh) {
@@ -195,7 +195,8 @@ enum cs_status cs_carrier_sew(struct cs_system *system, uint32_t seam, double *t
     struct cs_arena arena = {0};
     cs_posed_collider_at(system, (uint32_t)of->to.collider, 0, &sewing.posed);
     sewing.mesh.mesh = sewing.posed.collider->mesh;
-    sewing.n = sewing.mesh.mesh.present ? sewing.mesh.mesh.geometry->n : 0;
+    sewing.mesh.geometry = sewing.posed.collider->geometry;
+    sewing.n = sewing.mesh.mesh ? sewing.mesh.geometry->n : 0;
     CS_ARENA_ARRAY(&arena, sewing.vertices, 3 * (size_t)sewing.n, error);
     CS_ARENA_ARRAY(&arena, sewing.chosen, sewing.n, error);
     CS_ARENA_ARRAY(&arena, sewing.list, system->view.n, error);

@@ -259,16 +259,16 @@ static enum cs_status hold(struct cs_system *system, uint32_t b, uint32_t p, uin
     const struct cs_pin *pins = body->pins.items;
     const struct cs_body_range *range = system->bodies + b;
     for (uint32_t k = 0; k < body->pins.n; k++) {
-        const bool same = pins[k].to.present && pins[k].to.collider == pins[p].to.collider;
+        const bool same = pins[k].to && pins[k].to->collider == pins[p].to->collider;
         if (!same && cs_body_pin_selects(body, pins + k, system->view.n, range->first,
                                          i - range->first, system->start))
             return cs_fail(
                 error, CS_ERR_SCENE,
                 "bodies[%u].pins[%u].to: pins[%u] holds particle %u of the body too, "
                 "but not to collider %lld; expected one pin for each particle",
-                b, p, k, i - range->first, (long long)pins[p].to.collider);
+                b, p, k, i - range->first, (long long)pins[p].to->collider);
     }
-    system->events->held_by[i] = system->scene->events.n + 1 + (uint32_t)pins[p].to.collider;
+    system->events->held_by[i] = system->scene->events.n + 1 + (uint32_t)pins[p].to->collider;
     return CS_OK;
 }
 
@@ -280,8 +280,7 @@ enum cs_status cs_event_attach_pins(struct cs_system *system, struct cs_error *e
         const struct cs_pin *pins = body->pins.items;
         const struct cs_body_range *range = system->bodies + b;
         for (uint32_t p = 0; p < body->pins.n; p++)
-            for (uint32_t i = range->first;
-                 pins[p].to.present && i < range->first + range->count; i++)
+            for (uint32_t i = range->first; pins[p].to && i < range->first + range->count; i++)
                 if (cs_body_pin_selects(body, pins + p, n, range->first, i - range->first,
                                         system->start) &&
                     hold(system, b, p, i, error))
@@ -357,7 +356,7 @@ bool cs_events_turn_particles(const struct cs_scene *scene) {
     for (uint32_t e = 0; e < scene->events.n; e++) {
         const struct cs_grab *grab = &cs_scene_events(scene)[e].grab;
         const struct cs_move *move = &cs_scene_events(scene)[e].move;
-        carries |= grab->present && grab->to.present;
+        carries |= grab->present && grab->to;
         turns |= grab->present && cs_vec3_dot(grab->spin, grab->spin) > 0;
         spins |= move->present && cs_vec3_dot(move->spin, move->spin) > 0;
     }

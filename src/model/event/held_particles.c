@@ -19,6 +19,7 @@
 
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
+#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
 #include "scene/force_keys.h"
@@ -44,7 +45,7 @@ static int64_t collider_of(const struct cs_events *events, uint32_t holder) {
     if (holder > n)
         return (int64_t)holder - n - 1;
     const struct cs_grab *grab = &cs_scene_events(&events->scene)[holder - 1].grab;
-    return grab->present && grab->to.present ? grab->to.collider : -1;
+    return grab->present && grab->to ? grab->to->collider : -1;
 }
 
 /* True if particles of this holder are on a path. */
@@ -57,7 +58,7 @@ static void collider_frame(const struct cs_system *system, uint32_t k, double t,
                            struct frame *out) {
     struct cs_posed_collider collider;
     cs_posed_collider_at(system, k, t, &collider);
-    out->deforms = collider.collider->mesh.paths;
+    out->deforms = collider.collider->paths;
     out->collider = collider;
     memcpy(out->point, collider.centre, sizeof out->point);
     memcpy(out->rate, collider.velocity, sizeof out->rate);
@@ -141,7 +142,7 @@ static void deformed_at(const struct cs_system *system, const struct frame *fram
 /* Gives particle i at p to the nearest triangle. */
 static void take_triangle(struct cs_system *system, const struct frame *frame, size_t i,
                           const double p[3]) {
-    const struct cs_trimesh *mesh = frame->collider.collider->mesh.geometry;
+    const struct cs_trimesh *mesh = frame->collider.collider->geometry;
     double least = HUGE_VAL;
     for (uint32_t k = 0; k < mesh->n_triangles; k++) {
         struct cs_carrier at;
@@ -295,8 +296,7 @@ static double deformed_speed(const struct cs_system *system, const struct frame 
     double own[3], rate[3];
     own_at(system, frame, i, own, rate);
     const double weights = 1 + 2 * (fabs(own[0]) + fabs(own[1]));
-    return weights *
-           (frame->collider.collider->mesh.paths->speed + cs_event_angular_speed(system));
+    return weights * (frame->collider.collider->paths->speed + cs_event_angular_speed(system));
 }
 
 void cs_event_find_held(struct cs_system *system, double t) {

@@ -135,7 +135,7 @@ static void measure_pairs(const struct search *search, struct interface *at) {
 static void measure_layer(const struct search *search, struct interface *at) {
     const struct cs_collider *collider = cs_scene_collider_at(search->system->scene, at->b);
     *at = (struct interface){.a = at->a, .b = at->b};
-    if (collider && !collider->mesh.present)
+    if (collider && !collider->mesh)
         measure_collider(search, at);
     else
         measure_pairs(search, at);
@@ -158,7 +158,7 @@ static bool find_interface(const struct search *search, struct interface *at) {
     for (uint32_t a = 0; a < scene->bodies.n; a++)
         for (uint32_t b = a + 1; b < scene->bodies.n + scene->colliders.n; b++) {
             const struct cs_collider *collider = cs_scene_collider_at(scene, b);
-            if (collider && !collider->mesh.present
+            if (collider && !collider->mesh
                     ? !search->system->collider_params
                     : !pairs || !cs_scene_bodies_collide(scene, a, b, &friction))
                 continue;
@@ -268,7 +268,7 @@ static bool is_open(const struct cs_scene *scene, const struct interface *at) {
     const struct cs_collider *collider = cs_scene_collider_at(scene, at->b);
     const struct cs_body *bodies = cs_scene_bodies(scene);
     return bodies[at->a].thickness == 0 &&
-           (collider ? collider->mesh.present && collider->thickness == 0
+           (collider ? collider->mesh && collider->thickness == 0
                      : bodies[at->b].thickness == 0);
 }
 

@@ -61,7 +61,7 @@ static double way_beyond(const struct cs_system *system, uint32_t i, uint32_t co
  * number of triangles; n points outwards. HUGE_VAL from an open one, which has no inside. */
 static double mesh_distance(const struct cs_posed_collider *mesh, const double p[3],
                             double n[3]) {
-    const struct cs_trimesh *geometry = mesh->collider->mesh.geometry;
+    const struct cs_trimesh *geometry = mesh->collider->geometry;
     double least = HUGE_VAL;
     bool inside = false;
     if (geometry->n_open)

@@ -15,7 +15,7 @@ static double stiffness_of(const struct cs_body *body, uint32_t kind) {
     if (kind == CS_SPRING_BEND)
         return law->bend;
     /* the shear springs of a mesh are those of its network */
-    if (body->mesh.present)
+    if (body->mesh)
         return kind == CS_SPRING_STRETCH ? surface * law->stretch : law->stretch;
     return kind == CS_SPRING_STRETCH ? law->stretch : law->shear;
 }
@@ -131,7 +131,7 @@ static uint32_t grid_runs(const struct cs_body *body, uint32_t body_index, uint3
  * stiffness is 0. */
 static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_body *body,
                            struct cs_spring_run *run, double *lists, uint32_t *n_springs) {
-    const struct cs_trimesh *mesh = body->mesh.geometry;
+    const struct cs_trimesh *mesh = body->geometry;
     if (like->count == 0 || stiffness_of(body, like->kind) == 0)
         return 0;
     *n_springs += like->count;
@@ -154,7 +154,7 @@ static uint32_t add_listed(const struct cs_spring_run *like, const struct cs_bod
 static uint32_t mesh_runs(const struct cs_body *body, uint32_t body_index, uint32_t first,
                           struct cs_spring_run *runs, double *lists, uint32_t *n_springs) {
     const struct cs_spring_law *law = &body->springs;
-    const struct cs_trimesh *mesh = body->mesh.geometry;
+    const struct cs_trimesh *mesh = body->geometry;
     /* in the order of sums; the inner springs of a network count as shear */
     const struct {
         uint32_t kind, count;
@@ -188,6 +188,6 @@ uint32_t cs_springs_of_body(const struct cs_body *body, uint32_t body_index, uin
                             struct cs_spring_run *runs, double *lists, uint32_t *n_springs) {
     if (cs_scene_springs_left_out(body))
         return 0;
-    return body->mesh.present ? mesh_runs(body, body_index, first, runs, lists, n_springs)
-                              : grid_runs(body, body_index, first, runs, n_springs);
+    return body->mesh ? mesh_runs(body, body_index, first, runs, lists, n_springs)
+                      : grid_runs(body, body_index, first, runs, n_springs);
 }

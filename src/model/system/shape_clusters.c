@@ -19,8 +19,8 @@ struct key {
 /* Coordinate of a particle in the undeformed body; for a cloth, column or row times the
  * spacing. */
 static double position_of(const struct cs_body *body, uint32_t axis, uint32_t particle) {
-    if (body->mesh.present)
-        return body->mesh.geometry->positions[(size_t)axis * body->mesh.geometry->n + particle];
+    if (body->mesh)
+        return body->geometry->positions[(size_t)axis * body->geometry->n + particle];
     const uint32_t columns = (uint32_t)body->cloth.grid[0];
     const uint32_t step[2] = {particle % columns, particle / columns};
     return axis > 1 || step[axis] == 0

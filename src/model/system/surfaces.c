@@ -84,7 +84,7 @@ static struct cs_body_range range_of(const struct cs_system *system, uint32_t bo
     const struct cs_collider *collider = cs_scene_collider_at(system->scene, body);
     if (!collider)
         return system->bodies[body];
-    const struct cs_trimesh *mesh = collider->mesh.geometry;
+    const struct cs_trimesh *mesh = collider->geometry;
     return (struct cs_body_range){.first = surfaces->first_point[body],
                                   .count = mesh ? mesh->n : 0,
                                   .columns = 1,

@@ -5,6 +5,8 @@
 #include "base/hash.h"
 #include "base/serialise.h"
 #include "base/text.h"
+#include "mesh/vertex_paths.h"
+#include "scene/collider_keys.h"
 #include "scene/file/mesh_read.h"
 #include "scene/mesh_keys.h"
 
@@ -23,7 +25,7 @@ struct input {
     const char *name;
     const unsigned char *bytes;
     size_t length;
-    const struct cs_mesh_source *source;
+    const struct cs_collider *collider;
     struct cs_vertex_paths *paths;
     struct cs_arena *arena;
     struct cs_error *error;
@@ -72,7 +74,7 @@ static enum cs_status begin_keys(const struct input *in, uint64_t n_keys) {
 
 /* Vertices of the mesh before it was mended. */
 static uint32_t vertices_of(const struct input *in) {
-    const struct cs_trimesh *mesh = in->source->geometry;
+    const struct cs_trimesh *mesh = in->collider->geometry;
     return mesh->n_file ? mesh->n_file : mesh->n;
 }
 
@@ -85,7 +87,7 @@ static enum cs_status check_vertices(const struct input *in, uint64_t n) {
 /* Sets all positions from numbers (n_keys, n, 3) of `bytes` bytes each. */
 static enum cs_status set_positions(const struct input *in, const unsigned char *numbers,
                                     unsigned bytes) {
-    const struct cs_trimesh *mesh = in->source->geometry;
+    const struct cs_trimesh *mesh = in->collider->geometry;
     const size_t n = in->paths->n, n_file = vertices_of(in);
     for (size_t k = 0; k < in->paths->n_keys; k++)
         for (size_t i = 0; i < n; i++) {
@@ -99,7 +101,7 @@ static enum cs_status set_positions(const struct input *in, const unsigned char 
                                 "(-1e9..1e9)",
                                 k, from, p[c]);
             }
-            cs_mesh_to_scene(in->source, p, p);
+            cs_mesh_to_scene(in->collider->mesh, p, p);
             for (size_t c = 0; c < 3; c++)
                 in->paths->positions[(3 * k + c) * n + i] = p[c];
         }
@@ -207,7 +209,7 @@ static size_t npy_text(const struct member *npy, char text[NPY_TEXT_MAX]) {
 }
 
 static enum cs_status read_npz(const struct input *in) {
-    const char *array = in->source->key_frames.array;
+    const char *array = in->collider->mesh->key_frames.array;
     char text[NPY_TEXT_MAX];
     unsigned long long shape[3];
     unsigned bytes = 0;
@@ -262,7 +264,7 @@ static enum cs_status read_whole(struct input *in, const char *path) {
     char *bytes;
     size_t length;
     if (!cs_file_read(path, FILE_BYTES_MAX, &bytes, &length, in->error) &&
-        !cs_key_frames_read_bytes(bytes, length, in->source, in->paths, in->arena, in->error))
+        !cs_key_frames_read_bytes(bytes, length, in->collider, in->paths, in->arena, in->error))
         cs_hash_bytes(bytes, length, in->paths->file_hash);
     free(bytes);
     return in->error->status;
@@ -270,7 +272,7 @@ static enum cs_status read_whole(struct input *in, const char *path) {
 
 /* Reads the sequence of OBJ files. */
 static enum cs_status read_sequence(struct input *in, const char *folder) {
-    const struct cs_key_frames *keys = &in->source->key_frames;
+    const struct cs_key_frames *keys = &in->collider->mesh->key_frames;
     struct cs_text hashes = {0};
     char file[CS_TEXT_MAX], hash[CS_HASH_DIGITS];
     in->name = keys->file;
@@ -287,7 +289,7 @@ static enum cs_status read_sequence(struct input *in, const char *folder) {
     for (uint32_t k = 0; !in->error->status && cs_key_frames_file(keys, k, file); k++) {
         char path[4096];
         snprintf(path, sizeof path, "%s/%s", folder, file);
-        if (!cs_mesh_read_positions(path, file, in->source,
+        if (!cs_mesh_read_positions(path, file, in->collider,
                                     in->paths->positions + 3 * (size_t)k * in->paths->n, hash,
                                     in->error))
             cs_text_add(&hashes, "%s\n", hash);
@@ -300,42 +302,42 @@ static enum cs_status read_sequence(struct input *in, const char *folder) {
 }
 
 /* Sets what the scene's keys say. */
-static void set_keys(struct cs_vertex_paths *paths, const struct cs_mesh_source *source) {
-    const struct cs_key_frames *keys = &source->key_frames;
-    *paths = (struct cs_vertex_paths){.n = source->geometry->n,
+static void set_keys(struct cs_vertex_paths *paths, const struct cs_collider *collider) {
+    const struct cs_key_frames *keys = &collider->mesh->key_frames;
+    *paths = (struct cs_vertex_paths){.n = collider->geometry->n,
                                       .end = (enum cs_paths_end)keys->end,
                                       .start = keys->start,
                                       .interval = 1 / keys->rate};
 }
 
 enum cs_status cs_key_frames_read_bytes(const char *bytes, size_t length,
-                                        const struct cs_mesh_source *source,
+                                        const struct cs_collider *collider,
                                         struct cs_vertex_paths *paths, struct cs_arena *arena,
                                         struct cs_error *error) {
-    const struct input in = {source->key_frames.file,
+    const struct input in = {collider->mesh->key_frames.file,
                              (const unsigned char *)bytes,
                              length,
-                             source,
+                             collider,
                              paths,
                              arena,
                              error};
-    set_keys(paths, source);
+    set_keys(paths, collider);
     if (ends_with(in.name, ".pc2") ? read_pc2(&in) : read_npz(&in))
         return error->status;
     return cs_vertex_paths_finish(paths, arena, error);
 }
 
-enum cs_status cs_key_frames_read(const char *folder, const struct cs_mesh_source *source,
+enum cs_status cs_key_frames_read(const char *folder, const struct cs_collider *collider,
                                   struct cs_vertex_paths *paths, struct cs_arena *arena,
                                   struct cs_error *error) {
-    const char *file = source->key_frames.file;
+    const char *file = collider->mesh->key_frames.file;
     struct input in = {
-        .name = file, .source = source, .paths = paths, .arena = arena, .error = error};
+        .name = file, .collider = collider, .paths = paths, .arena = arena, .error = error};
     char path[4096];
     if (!cs_scene_is_below(file))
         return cs_fail(error, CS_ERR_SCENE,
                        "found \"%.60s\", expected a file in the scene's folder or below", file);
-    set_keys(paths, source);
+    set_keys(paths, collider);
     if (ends_with(file, ".obj"))
         return read_sequence(&in, folder) ? error->status
                                           : cs_vertex_paths_finish(paths, arena, error);

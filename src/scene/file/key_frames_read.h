@@ -14,24 +14,24 @@
 #include "mesh/trimesh.h"
 #include "scene/scene.h"
 
+struct cs_collider;
 struct cs_key_frames;
-struct cs_mesh_source;
 struct cs_vertex_paths;
 
 /* Prints the name of file k of the key frames; returns false after the last one. */
 bool cs_key_frames_file(const struct cs_key_frames *keys, uint32_t k, char out[CS_TEXT_MAX]);
 
-/* Reads and finishes the paths of source->key_frames from files in `folder`, for the vertices
- * of source->geometry; positions are multiplied by its scale. Messages start with the file's
+/* Reads and finishes the paths of a collider's key frames from files in `folder`, for the
+ * vertices of its mesh; positions are multiplied by its scale. Messages start with the file's
  * name. CS_ERR_SCENE: a name outside the folder, or a wrong number of files. CS_ERR_FILE,
  * CS_ERR_MEMORY. */
-enum cs_status cs_key_frames_read(const char *folder, const struct cs_mesh_source *source,
+enum cs_status cs_key_frames_read(const char *folder, const struct cs_collider *collider,
                                   struct cs_vertex_paths *paths, struct cs_arena *arena,
                                   struct cs_error *error);
 
 /* The same from the bytes of a PC2 or NPZ file in memory; the file's name says which. */
 enum cs_status cs_key_frames_read_bytes(const char *bytes, size_t length,
-                                        const struct cs_mesh_source *source,
+                                        const struct cs_collider *collider,
                                         struct cs_vertex_paths *paths, struct cs_arena *arena,
                                         struct cs_error *error);
 

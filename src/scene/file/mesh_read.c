@@ -2,6 +2,7 @@
 #include "scene/file/mesh_read.h"
 
 #include "base/file.h"
+#include "scene/collider_keys.h"
 #include "scene/mesh_keys.h"
 
 #include <stdlib.h>
@@ -181,9 +182,9 @@ static enum cs_status hash_triangles(const struct cs_trimesh *mesh, char digits[
 
 /* Sets positions from a file that was read, if it has the faces of the mesh. */
 static enum cs_status copy_positions(const struct cs_obj *obj, const char *name,
-                                     const struct cs_mesh_source *source, double *positions,
+                                     const struct cs_collider *collider, double *positions,
                                      struct cs_error *error) {
-    const struct cs_trimesh *mesh = source->geometry;
+    const struct cs_trimesh *mesh = collider->geometry;
     const uint32_t expected = mesh->n_file ? mesh->n_file : mesh->n;
     char hash[CS_HASH_DIGITS], found[CS_HASH_DIGITS];
     if (obj->mesh.n_vertices != expected)
@@ -199,7 +200,7 @@ static enum cs_status copy_positions(const struct cs_obj *obj, const char *name,
                        name);
     for (size_t i = 0; i < mesh->n; i++) {
         double p[3];
-        cs_mesh_to_scene(source,
+        cs_mesh_to_scene(collider->mesh,
                          obj->mesh.positions[mesh->file_vertex ? mesh->file_vertex[i] : i], p);
         for (size_t c = 0; c < 3; c++)
             positions[c * mesh->n + i] = p[c];
@@ -208,7 +209,7 @@ static enum cs_status copy_positions(const struct cs_obj *obj, const char *name,
 }
 
 enum cs_status cs_mesh_read_positions(const char *path, const char *name,
-                                      const struct cs_mesh_source *source, double *positions,
+                                      const struct cs_collider *collider, double *positions,
                                       char file_hash[CS_HASH_DIGITS], struct cs_error *error) {
     char *text;
     size_t length;
@@ -216,7 +217,7 @@ enum cs_status cs_mesh_read_positions(const char *path, const char *name,
     struct cs_arena names = {0};
     if (!cs_file_read(path, MESH_BYTES_MAX, &text, &length, error) &&
         !cs_obj_read(name, text, length, &obj, &names, error) &&
-        !copy_positions(&obj, name, source, positions, error))
+        !copy_positions(&obj, name, collider, positions, error))
         cs_hash_bytes(text, length, file_hash);
     free(text);
     cs_obj_finish(&obj);

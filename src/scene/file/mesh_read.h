@@ -6,6 +6,7 @@
 #include "scene/file/obj_read.h"
 #include "scene/scene.h"
 
+struct cs_collider;
 struct cs_mesh_source;
 
 /* Sets out to a position of the file in metres, y up: scaled, in the unit of source, turned.
@@ -25,10 +26,10 @@ enum cs_status cs_mesh_read_text(const char *name, const char *text, size_t leng
                                  const struct cs_mesh_source *source, struct cs_trimesh *mesh,
                                  struct cs_arena *arena, struct cs_error *error);
 
-/* Reads positions (3, n) of the vertices of source->geometry from a file that has its faces,
+/* Reads positions (3, n) of the vertices of a collider's mesh from a file that has its faces,
  * and the hash of the file's bytes. CS_ERR_FILE, CS_ERR_MEMORY. */
 enum cs_status cs_mesh_read_positions(const char *path, const char *name,
-                                      const struct cs_mesh_source *source, double *positions,
+                                      const struct cs_collider *collider, double *positions,
                                       char file_hash[CS_HASH_DIGITS], struct cs_error *error);
 
 #endif

@@ -2,6 +2,7 @@
  * of shape matching. */
 
 #include "mesh/spring_network.h"
+#include "mesh/vertex_paths.h"
 #include "model/system/shape_clusters.h"
 #include "scene/body_keys.h"
 #include "scene/body_particles.h"
@@ -9,6 +10,7 @@
 #include "scene/file/json_context.h"
 #include "scene/file/key_frames_read.h"
 #include "scene/file/mesh_read.h"
+#include "scene/mesh_keys.h"
 
 #include <stdio.h>
 
@@ -139,38 +141,39 @@ static enum cs_status split_body(const struct item *item, struct cs_body *body) 
 
 /* Reads the key frames of a mesh that is there, if it has any. */
 static enum cs_status read_key_frames(const struct item *item, const struct cs_scene *scene,
-                                      struct cs_mesh_source *source) {
+                                      struct cs_collider *collider) {
     struct cs_arena *arena = item->reader->arena;
     const size_t before = arena->used;
     struct cs_error said = {0};
-    if (!source->key_frames.present)
+    if (!collider->mesh->key_frames.present)
         return CS_OK;
     struct cs_vertex_paths *paths = cs_arena_alloc(arena, sizeof *paths, item->reader->error);
     if (!paths)
         return item->reader->error->status;
-    if (cs_key_frames_read(scene->folder, source, paths, arena, &said))
+    if (cs_key_frames_read(scene->folder, collider, paths, arena, &said))
         return refuse_mesh(item, "mesh.key_frames.file", said.status, said.message);
     paths->bytes = arena->used - before;
-    source->paths = paths;
+    collider->paths = paths;
     return CS_OK;
 }
 
-/* Makes the mesh of an item, and its spring network unless that is NULL or absent; records the
- * memory of both. */
+/* Makes the mesh of an item in *geometry, and its spring network unless that is NULL or absent;
+ * records the memory of both. */
 static enum cs_status read_mesh(const struct item *item, const struct cs_scene *scene,
-                                struct cs_mesh_source *source,
-                                const struct cs_spring_network *network) {
+                                const struct cs_mesh_source *source,
+                                const struct cs_spring_network *network,
+                                const struct cs_trimesh **geometry) {
     struct cs_arena *arena = item->reader->arena;
     const size_t before = arena->used;
     struct cs_trimesh *mesh = cs_arena_alloc(arena, sizeof *mesh, item->reader->error);
     if (!mesh)
         return item->reader->error->status;
-    source->geometry = mesh;
+    *geometry = mesh;
     enum cs_status status = make_mesh(item, scene, source, mesh);
     if (!status && network && network->present)
         status = make_network(item, network, mesh);
     mesh->bytes = arena->used - before;
-    return status ? status : read_key_frames(item, scene, source);
+    return status;
 }
 
 /* Makes mesh and clusters of a body; *particles: of the meshes so far, to refuse too many
@@ -178,11 +181,11 @@ static enum cs_status read_mesh(const struct item *item, const struct cs_scene *
 static enum cs_status read_body(const struct item *item, const struct cs_scene *scene,
                                 struct cs_body *body, double *particles) {
     /* a body of two shapes or none is refused by the check */
-    if (body->mesh.present == body->cloth.present)
+    if ((body->mesh != NULL) == body->cloth.present)
         return CS_OK;
-    if (body->mesh.present && read_mesh(item, scene, &body->mesh, &body->network))
+    if (body->mesh && read_mesh(item, scene, body->mesh, &body->network, &body->geometry))
         return item->reader->error->status;
-    *particles += body->mesh.present ? body->mesh.geometry->n : 0;
+    *particles += body->mesh ? body->geometry->n : 0;
     if (*particles > CS_PARTICLES_MAX)
         return refuse_mesh(item, "mesh", CS_ERR_SCENE,
                            "more particles in the meshes so far than a scene may have");
@@ -199,8 +202,9 @@ enum cs_status cs_scene_read_meshes(struct cs_json_context *context, const struc
     }
     for (uint32_t c = 0; c < scene->colliders.n; c++) {
         const struct item item = {context, root, "colliders", c};
-        struct cs_mesh_source *source = &cs_scene_colliders(scene)[c].mesh;
-        if (source->present && read_mesh(&item, scene, source, NULL))
+        struct cs_collider *of = cs_scene_colliders(scene) + c;
+        if (of->mesh && (read_mesh(&item, scene, of->mesh, NULL, &of->geometry) ||
+                         read_key_frames(&item, scene, of)))
             return context->error->status;
     }
     return CS_OK;

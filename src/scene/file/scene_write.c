@@ -5,8 +5,10 @@
 #include "base/json_writer.h"
 #include "base/options.h"
 #include "mesh/trimesh.h"
+#include "mesh/vertex_paths.h"
 #include "scene/body_keys.h"
 #include "scene/collider_keys.h"
+#include "scene/mesh_keys.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -145,20 +147,23 @@ void cs_scene_add_canonical(const struct cs_table *table, const void *object, co
 }
 
 /* Adds the hash of a mesh's file, since its contents count. */
-static void add_file(const struct cs_mesh_source *mesh, const char *list, uint32_t number,
-                     struct cs_text *out) {
-    if (mesh->present && *mesh->file)
-        cs_text_add(out, "%s[%u].mesh.file is %s\n", list, number, mesh->geometry->file_hash);
-    if (mesh->present && mesh->paths)
-        cs_text_add(out, "%s[%u].mesh.key_frames.file is %s\n", list, number,
-                    mesh->paths->file_hash);
+static void add_file(const struct cs_mesh_source *mesh, const struct cs_trimesh *geometry,
+                     const char *list, uint32_t number, struct cs_text *out) {
+    if (mesh && *mesh->file)
+        cs_text_add(out, "%s[%u].mesh.file is %s\n", list, number, geometry->file_hash);
 }
 
 static void add_files(const struct cs_scene *scene, struct cs_text *out) {
+    const struct cs_body *bodies = cs_scene_bodies(scene);
+    const struct cs_collider *colliders = cs_scene_colliders(scene);
     for (uint32_t b = 0; b < scene->bodies.n; b++)
-        add_file(&cs_scene_bodies(scene)[b].mesh, "bodies", b, out);
-    for (uint32_t c = 0; c < scene->colliders.n; c++)
-        add_file(&cs_scene_colliders(scene)[c].mesh, "colliders", c, out);
+        add_file(bodies[b].mesh, bodies[b].geometry, "bodies", b, out);
+    for (uint32_t c = 0; c < scene->colliders.n; c++) {
+        add_file(colliders[c].mesh, colliders[c].geometry, "colliders", c, out);
+        if (colliders[c].paths)
+            cs_text_add(out, "colliders[%u].mesh.key_frames.file is %s\n", c,
+                        colliders[c].paths->file_hash);
+    }
 }
 
 /* Orders lines by their bytes, independent of the locale. */

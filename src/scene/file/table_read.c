@@ -128,7 +128,16 @@ static enum cs_status read_list(struct cs_json_context *context, const struct cs
 
 static enum cs_status read_table(struct cs_json_context *context, const struct cs_json *value,
                                  const struct cs_option *row, void *object) {
-    return cs_table_read(context, value, row->table, cs_option_field(row, object));
+    void *field = cs_option_field(row, object);
+    if (!field) {
+        // apart and optional: there is none until it is read
+        field = cs_arena_alloc(context->arena, row->table->size, context->error);
+        if (!field)
+            return context->error->status;
+        cs_options_default(row->table, field);
+        *(void **)(void *)((char *)object + row->offset) = field;
+    }
+    return cs_table_read(context, value, row->table, field);
 }
 
 /* Reads a value in the form of its row. */
