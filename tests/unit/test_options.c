@@ -104,8 +104,11 @@ TEST(struct_elsewhere_is_filled) {
 
 /* An optional one is nowhere until it is read. */
 TEST(absent_struct_elsewhere_is_null) {
-    static const struct cs_table optional = {ROWS(inner_rows), .size = sizeof(struct inner),
-                                             .optional = true, .apart = true};
+    static const struct cs_table optional = {.rows = inner_rows,
+                                             .n = 1,
+                                             .size = sizeof(struct inner),
+                                             .optional = true,
+                                             .apart = true};
     static const struct cs_option row = {
         .name = "apart", .type = CS_TABLE, .count = 1, .table = &optional};
     static const struct cs_table holder_table = {.rows = &row, .n = 1, .size = sizeof(void *)};
