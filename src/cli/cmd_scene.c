@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/file_conflicts.h"
 #include "cli/line/print.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 
 #include <stdio.h>
@@ -59,7 +60,7 @@ static void add_contact(const struct cs_session *session, struct cs_text *out) {
 /* "FILE: ok, 4096 particles, ..." */
 static void add_verdict(const struct cs_session *session,
                         const struct cs_scene_findings *findings, struct cs_text *out) {
-    const struct cs_scene *scene = &session->scene;
+    const struct cs_scene *scene = session->scene;
     const struct cs_plan *plan = &session->plan;
     cs_text_add_plain(out, scene->path);
     cs_text_add(out, ": ok, ");
@@ -94,8 +95,8 @@ static void add_json(const struct cs_session *session, const struct cs_scene_fin
     cs_json_write(out,
                   "{\n  'file': %s, 'bodies': %u, 'particles': %u, 'springs': %u, "
                   "'colliders': %u,\n  'integrator': %s",
-                  session->scene.path, plan->n_bodies, plan->n, plan->n_springs,
-                  session->scene.colliders.n, session->method.integrator->name);
+                  session->scene->path, plan->n_bodies, plan->n, plan->n_springs,
+                  session->scene->colliders.n, session->method.integrator->name);
     add_lines("contact", &contact, out);
     add_lines("warnings", &findings->warnings, out);
     add_lines("hints", &findings->hints, out);
@@ -146,7 +147,7 @@ static enum cs_status print_scene(const struct options *options,
     if (options->plan)
         add_plan(session, &out);
     else {
-        cs_scene_print(&session->scene, &session->method.table, session->method.options, 0,
+        cs_scene_print(session->scene, &session->method.table, session->method.options, 0,
                        &out);
         cs_text_add(&out, "\n");
     }

@@ -4,6 +4,7 @@
 
 #include "draw/matrix.h"
 #include "draw/view.h"
+#include "scene/scene.h"
 #include "scene/shape_core.h"
 
 /* Makes the visible side of a sphere: rings about the line of sight, the last on

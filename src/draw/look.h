@@ -6,9 +6,9 @@
 #define CS_DRAW_LOOK_H
 
 #include "model/contact/posed_collider.h"
-#include "scene/scene.h"
 
 struct cs_material;
+struct cs_scene;
 
 /* Source of the colours of bodies. */
 enum cs_look_colours {

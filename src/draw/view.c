@@ -84,6 +84,10 @@ static void set_camera(struct cs_view_state *view, const struct cs_render *rende
     view->pixels_per_m = height / (2 * slope * distance);
 }
 
+bool cs_view_varies(const struct cs_scene *scene) {
+    return scene->camera->path.n > 0 || scene->camera->frame != CS_FRAME_GIVEN;
+}
+
 void cs_view_move(struct cs_view_state *view, const struct cs_scene *scene,
                   const struct cs_bounding_sphere *sphere, size_t n,
                   const struct cs_frame *frame) {

@@ -66,9 +66,7 @@ void cs_view_set_colours(struct cs_view_state *view, const struct cs_scene *scen
 
 /* Returns true if the camera may change from frame to frame: it follows a path, or fits itself
  * to the bodies. */
-static inline bool cs_view_varies(const struct cs_scene *scene) {
-    return scene->camera->path.n > 0 || scene->camera->frame != CS_FRAME_GIVEN;
-}
+bool cs_view_varies(const struct cs_scene *scene);
 
 /* Moves a camera that varies to the time of a frame of n particles: along its path, or fitted
  * to the bodies. */

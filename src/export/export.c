@@ -1,6 +1,8 @@
 /* Hands every sample of a run to the writers of all requested formats. */
 #include "export/export.h"
 
+#include "session/scene_view.h"
+
 #include <string.h>
 
 #define X(BIT, name) &cs_export_##name,

@@ -5,7 +5,6 @@
 
 #include "base/text.h"
 #include "model/system/particle_system.h"
-#include "scene/scene.h"
 
 #include <clothsim/integrator.h>
 

@@ -1,6 +1,6 @@
-/* The rows of `bodies`: cloth, network, masses, springs, pins, material; and the check of a
- * body's elastic keys. The rows of these are in elastic_keys.c, those of meshes in mesh_keys.c.
- */
+/* The rows of `bodies`: cloth, network, masses, springs, pins, holders, material; and the check
+ * of a body's elastic keys. The rows of these are in elastic_keys.c, those of meshes and
+ * placements in mesh_keys.c. */
 #include "scene/body_keys.h"
 #include "scene/check.h"
 #include "scene/table_rows.h"
@@ -10,6 +10,14 @@
 static const double zero3[3] = {0, 0, 0}, one3[3] = {1, 1, 1};
 static const double one2[2] = {1, 1};
 static const double absent3[3] = {ABSENT, ABSENT, ABSENT};
+
+static const struct cs_option holder_rows[] = {
+    INT(struct cs_holder, collider, "", -1, 0, 4294967295.0,
+        "number of the collider from 0; must be given"),
+};
+
+const struct cs_table cs_holder_table = {ROWS(holder_rows), .size = sizeof(struct cs_holder),
+                                         .optional = true, .apart = true};
 
 static const char *const start_names[] = {"hanging", "flat", NULL};
 static const struct cs_option cloth_rows[] = {

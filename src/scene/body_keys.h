@@ -4,21 +4,9 @@
 #define CS_BODY_KEYS_H
 
 #include "mesh/spring_network.h"
+#include "scene/check.h"
 #include "scene/elastic_keys.h"
 #include "scene/scene.h"
-
-/* A rigid placement x = R p + translate; R from the matrix, or from the quaternion. */
-struct cs_pose {
-    double translate[3]; /* m */
-    double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
-    double matrix[9];    /* rows of a rotation matrix; first element NAN: absent */
-};
-
-/* A collider that carries particles along. */
-struct cs_holder {
-    bool present;
-    int64_t collider; /* -1: not given, refused */
-};
 
 /* Plane of the cloth before `place` is applied. */
 enum cs_start { CS_START_HANGING, CS_START_FLAT };

@@ -138,3 +138,14 @@ void cs_scene_remove_corrections(struct cs_scene *scene) {
 bool cs_scene_contact_is_force(const struct cs_scene *scene) {
     return scene->contact->law == CS_CONTACT_FORCE;
 }
+
+bool cs_scene_crossings_by_pairs(const struct cs_scene *scene) {
+    return scene->crossings < 0 && cs_scene_has_body_contact(scene);
+}
+
+enum cs_crossings_policy cs_scene_crossings(const struct cs_scene *scene) {
+    if (cs_scene_crossings_by_pairs(scene))
+        return CS_CROSSINGS_LIMIT;
+    return scene->crossings < 0 ? CS_CROSSINGS_IGNORE
+                                : (enum cs_crossings_policy)scene->crossings;
+}

@@ -5,9 +5,11 @@
 #ifndef CS_SCENE_BODY_PAIRS_H
 #define CS_SCENE_BODY_PAIRS_H
 
-#include "scene/scene.h"
+#include <stdbool.h>
+#include <stdint.h>
 
 struct cs_collider;
+struct cs_scene;
 
 /* Returns the number of surfaces. */
 uint32_t cs_scene_surfaces(const struct cs_scene *scene);
@@ -63,16 +65,9 @@ enum cs_crossings_policy {
 };
 
 /* Returns true if the scene leaves it open and has bodies in contact: they get `limit`. */
-static inline bool cs_scene_crossings_by_pairs(const struct cs_scene *scene) {
-    return scene->crossings < 0 && cs_scene_has_body_contact(scene);
-}
+bool cs_scene_crossings_by_pairs(const struct cs_scene *scene);
 
 /* Returns the policy of a scene. */
-static inline enum cs_crossings_policy cs_scene_crossings(const struct cs_scene *scene) {
-    if (cs_scene_crossings_by_pairs(scene))
-        return CS_CROSSINGS_LIMIT;
-    return scene->crossings < 0 ? CS_CROSSINGS_IGNORE
-                                : (enum cs_crossings_policy)scene->crossings;
-}
+enum cs_crossings_policy cs_scene_crossings(const struct cs_scene *scene);
 
 #endif

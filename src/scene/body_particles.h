@@ -2,12 +2,15 @@
 #ifndef CS_BODY_PARTICLES_H
 #define CS_BODY_PARTICLES_H
 
-#include "scene/scene.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 struct cs_body;
 struct cs_holder;
 struct cs_pin;
 struct cs_pose;
+struct cs_scene;
 
 /* Body b of a scene. */
 const struct cs_body *cs_scene_body(const struct cs_scene *scene, uint32_t b);

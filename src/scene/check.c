@@ -1,8 +1,7 @@
 /* Messages of checks, and the checks of directions and rotations. */
 #include "scene/check.h"
 
-#include "scene/mesh_keys.h"
-
+#include <clothsim/option.h>
 #include <math.h>
 #include <stdio.h>
 

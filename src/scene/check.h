@@ -1,11 +1,29 @@
-/* check.h - failures of a scene's checks, and checks of directions and rotations. */
+/* check.h - failures of a scene's checks, and checks of directions and placements; the keys of
+ * a placement, which bodies and meshes share, and of a holder, which pins and grabs share. */
 #ifndef CS_SCENE_CHECK_H
 #define CS_SCENE_CHECK_H
 
-#include "scene/scene.h"
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
 
 struct cs_body;
-struct cs_pose;
+struct cs_list;
+struct cs_scene;
+
+/* A rigid placement x = R p + translate; R from the matrix, or from the quaternion. */
+struct cs_pose {
+    double translate[3]; /* m */
+    double rotate[4];    /* quaternion x, y, z, w; normalised by cs_scene_check */
+    double matrix[9];    /* rows of a rotation matrix; first element NAN: absent */
+};
+
+/* A collider that carries particles along. */
+struct cs_holder {
+    bool present;
+    int64_t collider; /* -1: not given, refused */
+};
 
 /* Destination of a failure: the JSON path of the faulty value, and the message. */
 struct cs_check {

@@ -11,11 +11,12 @@
 #ifndef CS_COLLIDER_H
 #define CS_COLLIDER_H
 
+#include "base/status.h"
 #include "base/vec3.h"
 #include "mesh/trimesh.h"
 #include "mesh/vertex_paths.h"
-#include "scene/check.h"
 
+struct cs_check;
 struct cs_collider;
 
 /* One collider at one time: a shape with its pose and its motion. */

@@ -2,7 +2,7 @@
 #ifndef CS_CONTACT_KEYS_H
 #define CS_CONTACT_KEYS_H
 
-#include "scene/scene.h"
+#include <clothsim/option.h>
 
 /* Friction of contact by force: a function of the velocity, or with a memory
  * (model/contact/bristle_law.h). */

@@ -2,9 +2,13 @@
 #ifndef CS_EVENT_KEY_H
 #define CS_EVENT_KEY_H
 
-#include "scene/scene.h"
+#include "base/status.h"
+
+#include <stdbool.h>
 
 struct cs_event;
+struct cs_option;
+struct cs_scene;
 
 /* A number of the scene and its row of the tables. */
 struct cs_event_key {

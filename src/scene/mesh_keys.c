@@ -1,5 +1,4 @@
-/* The rows of meshes, of key frames, of a placement and of a holder, which bodies, colliders
- * and events share. */
+/* The rows of meshes, of key frames and of a placement, which bodies and colliders share. */
 #include "scene/mesh_keys.h"
 #include "scene/scene.h"
 #include "scene/table_rows.h"
@@ -21,14 +20,6 @@ static const struct cs_option place_rows[] = {
            "rotation as the rows of a matrix, instead of rotate"),
 };
 const struct cs_table cs_pose_table = {ROWS(place_rows), .size = sizeof(struct cs_pose)};
-
-static const struct cs_option holder_rows[] = {
-    INT(struct cs_holder, collider, "", -1, 0, 4294967295.0,
-        "number of the collider from 0; must be given"),
-};
-
-const struct cs_table cs_holder_table = {ROWS(holder_rows), .size = sizeof(struct cs_holder),
-                                         .optional = true, .apart = true};
 
 const char *const cs_mesh_shape_names[] = {"box", "sphere", "torus", "limbs", NULL};
 static const double one3[3] = {1, 1, 1};

@@ -2,7 +2,9 @@
 #ifndef CS_MESH_KEYS_H
 #define CS_MESH_KEYS_H
 
-#include "scene/body_keys.h"
+#include "scene/check.h"
+
+#include <clothsim/option.h>
 
 /* Positions of the vertices at equal intervals of time, in files. */
 struct cs_key_frames {

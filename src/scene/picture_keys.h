@@ -2,7 +2,7 @@
 #ifndef CS_PICTURE_KEYS_H
 #define CS_PICTURE_KEYS_H
 
-#include "scene/scene.h"
+#include <clothsim/option.h>
 
 enum cs_frame_kind { CS_FRAME_GIVEN, CS_FRAME_AUTO, CS_FRAME_START };
 enum cs_projection { CS_PROJECTION_PERSPECTIVE, CS_PROJECTION_ORTHOGRAPHIC };

@@ -2,6 +2,7 @@
  * its structs in NAME_keys.h. Parsing, --set, --resolved, the schema and the man page all come
  * from these tables. A default outside its range (NAN, -1) means: absent unless given. */
 #include "scene/picture_keys.h"
+#include "scene/scene.h"
 #include "scene/table_rows.h"
 
 static const struct cs_option time_rows[] = {

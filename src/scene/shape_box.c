@@ -5,6 +5,7 @@
  * The gradient is the unit vector from the nearest point of the core; inside the core it is the
  * normal of the nearest face. shape_core.c has the smoothed distance and its derivatives. */
 #include "scene/body_particles.h"
+#include "scene/check.h"
 #include "scene/collider_keys.h"
 #include "scene/shape_core.h"
 #include "scene/table_rows.h"

@@ -4,6 +4,7 @@
  * are 0. The distance is d = |(x_0, sign(x_1) max(|x_1| - c, 0), x_2)| - r; its gradient is
  * that vector divided by its length (shape_core.c). */
 #include "base/vec3.h"
+#include "scene/check.h"
 #include "scene/collider_keys.h"
 #include "scene/shape_core.h"
 #include "scene/table_rows.h"

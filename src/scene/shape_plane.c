@@ -3,6 +3,7 @@
  * With a point c and the unit normal n the signed distance is d(p) = n.(p - c), negative behind
  * the plane. Its gradient is n and its Hessian 0: exact and smooth distance are the same. */
 #include "base/vec3.h"
+#include "scene/check.h"
 #include "scene/collider.h"
 #include "scene/collider_keys.h"
 #include "scene/shape_core.h"

@@ -2,6 +2,7 @@
 #include "session/energy_monitor.h"
 
 #include "base/vec3.h"
+#include "model/contact/contact_samples.h"
 #include "model/contact/posed_collider.h"
 #include "model/event/event_state.h"
 #include "model/event/events.h"
@@ -275,9 +276,9 @@ void cs_energy_monitor_sample(struct cs_energy_monitor *monitor, const struct cs
     const struct cs_outgrown_samples gap =
         cs_contact_samples_find_outgrown(system, run->t, run->x);
     row->depth = fmax(cs_posed_colliders_depth(system, run->t, run->x), gap.depth);
-    if (gap.depth > monitor->gap.depth)
-        monitor->gap.depth = gap.depth, monitor->gap.collider = gap.collider;
-    monitor->gap.stretch = fmax(monitor->gap.stretch, gap.stretch);
+    if (gap.depth > monitor->gap_depth)
+        monitor->gap_depth = gap.depth, monitor->gap_collider = gap.collider;
+    monitor->gap_stretch = fmax(monitor->gap_stretch, gap.stretch);
     balance(monitor, run, row);
     /* no bound of speed holds after an event has added energy */
     if (with_event)

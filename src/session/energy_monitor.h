@@ -43,7 +43,6 @@
 #include "session/table.h"
 #include "sim/run_state.h"
 
-#include "model/contact/contact_samples.h"
 #include "model/force/diagnostics.h"
 
 /* X(name, word, letter of maps, colour of maps, what it means) from best to worst: green to red
@@ -134,7 +133,10 @@ struct cs_energy_monitor {
     double acceleration; /* m/s2, the largest by gravity, wind and viewpoint forces */
     double mass, wind_mass; /* kg that can move; sum of m a^2 in kg m2/s4, of outer forces */
     struct cs_cloth_peak cloth[CS_CLOTH_BOUNDS];
-    struct cs_outgrown_samples gap;     /* the deepest, with the largest stretch */
+    /* the deepest gap between samples, its collider, and the largest stretch
+     * (contact_samples.h) */
+    double gap_depth, gap_stretch;
+    uint32_t gap_collider;
     struct cs_energy_monitor_row first; /* when an instability began; verdict BOUNDED: none */
     enum cs_stability_verdict worst_verdict;
 };

@@ -71,7 +71,7 @@ static void add_ramp(struct cs_picture *picture, const struct cs_event *event,
     struct cs_event_key key;
     const bool at_once = !isnan(event->at);
     uint32_t k = picture->n_ramps;
-    if (cs_event_key_find(&picture->drawn, event->ramp.key, &key, error))
+    if (cs_event_key_find(picture->drawn, event->ramp.key, &key, error))
         return;
     const struct cs_picture_ramp ramp = {.value = key.value,
                                          .from = at_once ? event->at : event->from,
@@ -92,14 +92,15 @@ static enum cs_status make_ramps(struct cs_picture *picture, struct cs_error *er
         n += cs_event_is_picture(events + e);
     if (n == 0)
         return CS_OK;
-    cs_scene_copy(&picture->drawn, picture->scene, &picture->drawn.arena, error);
+    picture->drawn = calloc(1, sizeof *picture->drawn);
     picture->ramps = calloc(n, sizeof *picture->ramps);
-    if (!picture->ramps)
-        cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of pictures");
+    if (!picture->drawn || !picture->ramps)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for the colours of pictures");
+    cs_scene_copy(picture->drawn, picture->scene, &picture->drawn->arena, error);
     for (uint32_t e = 0; e < picture->scene->events.n && !error->status; e++)
         if (cs_event_is_picture(events + e))
             add_ramp(picture, events + e, error);
-    picture->scene = &picture->drawn;
+    picture->scene = picture->drawn;
     return error->status;
 }
 
@@ -120,9 +121,9 @@ static void set_ramps(struct cs_picture *picture, double t) {
 }
 
 static void free_ramps(struct cs_picture *picture) {
-    if (picture->scene != &picture->drawn)
-        return;
-    cs_scene_finish(&picture->drawn);
+    if (picture->drawn)
+        cs_scene_finish(picture->drawn);
+    free(picture->drawn);
     free(picture->ramps);
 }
 

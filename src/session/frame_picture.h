@@ -24,7 +24,7 @@ struct cs_picture_ramp {
 /* Pictures of one run; zeroed: closed. Must not move in memory while open. */
 struct cs_picture {
     const struct cs_scene *scene;  /* borrowed, or `drawn` */
-    struct cs_scene drawn;         /* with the numbers of its ramps at t; its lists are owned */
+    struct cs_scene *drawn;        /* owned, with the numbers of its ramps at t; or NULL */
     struct cs_picture_ramp *ramps; /* (n_ramps), owned, by their begin */
     uint32_t n_ramps;
     const struct cs_system *system; /* borrowed */

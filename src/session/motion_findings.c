@@ -152,7 +152,7 @@ static void go(struct rehearsal *rehearsal, double seconds) {
 static enum cs_status rehearse(const struct cs_session *session, double seconds,
                                const struct cure *cure, struct rehearsal *rehearsal,
                                struct cs_error *error) {
-    if (cs_system_build(&rehearsal->system, &session->scene, &session->plan, error))
+    if (cs_system_build(&rehearsal->system, session->scene, &session->plan, error))
         return error->status;
     struct cs_events *events = rehearsal->system.events;
     struct cs_event *event =
@@ -213,7 +213,7 @@ static enum cs_status find_cure(const struct cs_session *session, double seconds
                                 struct rehearsal *rehearsal, struct cure *cure,
                                 struct cs_error *error) {
     for (int tries = 0; tries < TRIES; tries++) {
-        if (!propose(&session->scene, rehearsal->entries + k, cure) ||
+        if (!propose(session->scene, rehearsal->entries + k, cure) ||
             rehearse(session, seconds, cure, rehearsal, error))
             break;
         // a later leg is told after this one

@@ -117,7 +117,7 @@ enum cs_status cs_provenance_out_print(struct cs_session *session, const char *h
                                        const char *method, struct cs_text *out,
                                        struct cs_error *error) {
     struct cs_provenance_out_module module;
-    if (cs_provenance_out_print_scene(&session->scene, out, error) ||
+    if (cs_provenance_out_print_scene(session->scene, out, error) ||
         cs_provenance_out_find_module(session, &module, error))
         return error->status;
     cs_json_write(out, ",\n  'scene_hash': %s,\n  'method': %s,\n", hash, method);

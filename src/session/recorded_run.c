@@ -39,9 +39,9 @@ enum cs_status cs_session_fit_frames(const struct cs_session_settings *settings,
     asked.integrator = "velocity-verlet";
     if (cs_session_open_plan(&session, &asked, error))
         return error->status;
-    const double cover = cs_follow_frames(&session.scene, *seconds);
+    const double cover = cs_follow_frames(session.scene, *seconds);
     if (*frames)
-        *seconds = *frames / session.scene.time.fps;
+        *seconds = *frames / session.scene->time.fps;
     else if (cover <= 1e6)
         *frames = (uint32_t)cover;
     else
@@ -72,7 +72,7 @@ static enum cs_status renew(struct cs_recorded_run *recording, struct cs_error *
 /* Finds when particles that are pinned can move first: applies the events without a run. */
 static enum cs_status find_releases(struct cs_recorded_run *recording, struct cs_error *error) {
     struct cs_system *system = &recording->session.system;
-    const double end = recording->frames / recording->session.scene.time.fps;
+    const double end = recording->frames / recording->session.scene->time.fps;
     double *free_from = recording->free_from, t = 0;
     for (uint32_t i = 0; i < system->view.n; i++)
         free_from[i] = system->inv_mass[i] > 0 ? 0 : HUGE_VAL;
@@ -179,7 +179,7 @@ enum cs_status cs_trajectory_init(struct cs_trajectory *trajectory,
                                   struct cs_error *error) {
     *trajectory = (struct cs_trajectory){.n = recording->session.system.view.n,
                                          .frames = recording->frames,
-                                         .fps = recording->session.scene.time.fps};
+                                         .fps = recording->session.scene->time.fps};
     const size_t n = trajectory->n, values = ((size_t)trajectory->frames + 1) * 6 * n;
     trajectory->states = calloc(values + n, sizeof *trajectory->states);
     if (!trajectory->states)

@@ -256,7 +256,7 @@ static void check_symmetry(const struct cs_system *system, struct cs_text *out) 
 static double step_of(const struct cs_session *session) {
     const struct cs_integrator *integrator = session->method.integrator;
     const struct cs_option *row = cs_option_find(&session->method.table, "dt");
-    const double frame = 1 / session->scene.time.fps;
+    const double frame = 1 / session->scene->time.fps;
     double dt = 0;
     if (!row || row->type != CS_REAL || integrator->traits & CS_ADAPTIVE)
         return 0;

@@ -13,13 +13,14 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 /* Fails with a message about the scene, at the place in its file that the message names. */
 static enum cs_status fail_at(const struct cs_session *session, enum cs_status status,
                               const char *message, struct cs_error *error) {
-    return cs_scene_refuse(&session->scene, session->settings.overrides,
+    return cs_scene_refuse(session->scene, session->settings.overrides,
                            session->settings.n_overrides, status, message, error);
 }
 
@@ -29,11 +30,11 @@ static enum cs_status read_scene(struct cs_session *session, struct cs_error *er
     const struct cs_session_settings *settings = &session->settings;
     char found[CS_DATA_PATH_MAX];
     if (settings->text)
-        return cs_scene_read_text(&session->scene, settings->scene, settings->text,
+        return cs_scene_read_text(session->scene, settings->scene, settings->text,
                                   strlen(settings->text), settings->overrides,
                                   settings->n_overrides, error);
     const char *path = cs_scene_find(settings->scene, found, sizeof found);
-    cs_scene_read(&session->scene, path, settings->overrides, settings->n_overrides, error);
+    cs_scene_read(session->scene, path, settings->overrides, settings->n_overrides, error);
     if (error->status != CS_ERR_FILE || access(path, F_OK) == 0 || !strcmp(path, "-"))
         return error->status;
     // a name that is nearly right
@@ -61,9 +62,9 @@ static enum cs_status check_quotes(const struct cs_method *method,
  * scene's: an option that the command line makes idle is no mistake. */
 static enum cs_status set_options_of_scene(struct cs_session *session, const char *pairs,
                                            struct cs_error *error) {
-    const struct cs_setting *options = session->scene.integrator_settings.items;
+    const struct cs_setting *options = session->scene->integrator_settings.items;
     struct cs_error said = {0};
-    for (uint32_t k = 0; k < session->scene.integrator_settings.n; k++)
+    for (uint32_t k = 0; k < session->scene->integrator_settings.n; k++)
         if (check_quotes(&session->method, options + k, error) ||
             cs_method_set(&session->method, options[k].name, options[k].value, options[k].place,
                           CS_ERR_SCENE, error))
@@ -98,7 +99,7 @@ static enum cs_status take_method(struct cs_session *session, const char *name,
 /* Finds the requested method, or the scene's own. The scene's options apply if the scene names
  * the same method. */
 static enum cs_status read_method(struct cs_session *session, struct cs_error *error) {
-    const struct cs_scene *scene = &session->scene;
+    const struct cs_scene *scene = session->scene;
     const char *asked = session->settings.integrator, *pairs = NULL;
     struct cs_method *method = &session->method;
     struct cs_error missing = {0};
@@ -131,9 +132,9 @@ static enum cs_status read_method(struct cs_session *session, struct cs_error *e
 
 /* The scene is printed and hashed with the method that runs it. */
 static void name_method(struct cs_session *session) {
-    snprintf(session->scene.integrator, sizeof session->scene.integrator, "%s",
+    snprintf(session->scene->integrator, sizeof session->scene->integrator, "%s",
              session->method.integrator->name);
-    session->scene.integrator_settings.n = 0;
+    session->scene->integrator_settings.n = 0;
 }
 
 /* Method, options and dt of the session, in this order of precedence: given integrator, command
@@ -161,13 +162,13 @@ static enum cs_status check_method(struct cs_session *session, struct cs_error *
     const struct cs_integrator *method = session->method.integrator;
     const bool render = session->settings.render;
     struct cs_error said = {0};
-    cs_plan_choose_contact_law(&session->scene, method);
-    if (!session->settings.method && cs_plan_check(&session->scene, method, &said))
+    cs_plan_choose_contact_law(session->scene, method);
+    if (!session->settings.method && cs_plan_check(session->scene, method, &said))
         return fail_at(session, said.status, said.message, error);
-    if (render && session->scene.render->look == CS_LOOK_GOALS && !cs_run_has_goals(method))
+    if (render && session->scene->render->look == CS_LOOK_GOALS && !cs_run_has_goals(method))
         return cs_fail(error, CS_ERR_SCENE,
                        "%s: render.look: integrator \"%s\" has no goals to draw",
-                       session->scene.path, method->name);
+                       session->scene->path, method->name);
     return CS_OK;
 }
 
@@ -191,7 +192,7 @@ static enum cs_status start_threads(struct cs_session *session, struct cs_error 
     const bool chosen = threads == CS_THREADS_AUTO;
     struct cs_error refused = {0};
     if (chosen)
-        threads = threads_of(&session->scene);
+        threads = threads_of(session->scene);
     session->started_pool = !cs_pool_start(threads, &refused);
     /* one thread gives the same bits: a failure only where more were asked for */
     return session->started_pool || chosen
@@ -204,17 +205,17 @@ static enum cs_status start_threads(struct cs_session *session, struct cs_error 
 static void change_scene(struct cs_session *session) {
     const struct cs_session_settings *settings = &session->settings;
     if (settings->switch_off_corrections)
-        cs_scene_remove_corrections(&session->scene);
-    if (settings->count_crossings_only && cs_scene_crossings_by_pairs(&session->scene))
-        session->scene.crossings = CS_CROSSINGS_COUNT;
+        cs_scene_remove_corrections(session->scene);
+    if (settings->count_crossings_only && cs_scene_crossings_by_pairs(session->scene))
+        session->scene->crossings = CS_CROSSINGS_COUNT;
     if (settings->fps > 0)
-        session->scene.time.fps = settings->fps;
+        session->scene->time.fps = settings->fps;
     if (settings->edit_scene)
-        settings->edit_scene(&session->scene, settings->ctx);
+        settings->edit_scene(session->scene, settings->ctx);
 }
 
 static void make_plan(struct cs_session *session) {
-    cs_plan_make(&session->plan, &session->scene,
+    cs_plan_make(&session->plan, session->scene,
                  session->method.integrator->needs | session->settings.needs,
                  session->settings.render);
 }
@@ -225,12 +226,12 @@ static enum cs_status choose_by_cost(struct cs_session *session, struct cs_error
     struct cs_system system = {0};
     struct cs_error said = {0};
     const bool contact =
-        session->scene.colliders.n > 0 || cs_scene_has_body_contact(&session->scene);
+        session->scene->colliders.n > 0 || cs_scene_has_body_contact(session->scene);
     const double most = contact ? RATE_IN_CONTACT : RATE_FREE;
     if (!session->is_automatic || session->method.integrator->needs & CS_NEED_CLUSTERS)
         return CS_OK;
     // a scene that cannot be built is refused where it is built for the run
-    const bool built = !cs_system_build(&system, &session->scene, &session->plan, &said);
+    const bool built = !cs_system_build(&system, session->scene, &session->plan, &said);
     session->rate = built ? fmax(system.view.omega, 2 * system.view.delta) : 0;
     cs_system_finish(&system);
     session->rate_limit = most;
@@ -247,7 +248,10 @@ static enum cs_status choose_by_cost(struct cs_session *session, struct cs_error
 static enum cs_status open_plan(struct cs_session *session,
                                 const struct cs_session_settings *settings,
                                 struct cs_error *error) {
-    *session = (struct cs_session){.settings = *settings};
+    *session =
+        (struct cs_session){.settings = *settings, .scene = calloc(1, sizeof *session->scene)};
+    if (!session->scene)
+        return cs_fail(error, CS_ERR_MEMORY, "out of memory for a scene");
     if (read_scene(session, error) || choose_method(session, error) ||
         check_method(session, error) || start_threads(session, error))
         return error->status;
@@ -263,13 +267,13 @@ enum { BUILD_PARTICLES = 65536, TWIN_SIDE = 96 };
 /* Reads the scene with its grids cut to TWIN_SIDE particles a side. */
 static enum cs_status open_twin(const struct cs_session *session, struct cs_session *twin,
                                 struct cs_arena *arena, struct cs_error *error) {
-    const struct cs_body *bodies = cs_scene_bodies(&session->scene);
+    const struct cs_body *bodies = cs_scene_bodies(session->scene);
     struct cs_session_settings settings = session->settings;
-    const uint32_t n = settings.n_overrides + session->scene.bodies.n;
+    const uint32_t n = settings.n_overrides + session->scene->bodies.n;
     struct cs_override *overrides = cs_arena_alloc_array(arena, n, sizeof *overrides, error);
     for (uint32_t k = 0; overrides && k < settings.n_overrides; k++)
         overrides[k] = settings.overrides[k];
-    for (uint32_t b = 0; overrides && b < session->scene.bodies.n; b++) {
+    for (uint32_t b = 0; overrides && b < session->scene->bodies.n; b++) {
         const int64_t *grid = bodies[b].cloth.grid;
         char path[64], value[64];
         if (bodies[b].mesh)
@@ -295,7 +299,7 @@ static double predict_bytes(const struct cs_session *session) {
     struct cs_error unseen = {0};
     double each = STATE_DOUBLES * sizeof(double);
     if (!open_twin(session, &twin, &arena, &unseen) &&
-        !cs_system_build(&twin.system, &twin.scene, &twin.plan, &unseen) &&
+        !cs_system_build(&twin.system, twin.scene, &twin.plan, &unseen) &&
         !cs_session_begin(&twin, NULL, &unseen))
         each = (double)cs_run_bytes(&twin.run) / twin.plan.n;
     cs_session_close(&twin);
@@ -327,10 +331,10 @@ enum cs_status cs_session_build(struct cs_session *session, struct cs_error *err
     if (check_memory(session, error))
         return error->status;
     // what only the built system tells is a fault of the scene too
-    if (cs_system_build(&session->system, &session->scene, &session->plan, &said))
+    if (cs_system_build(&session->system, session->scene, &session->plan, &said))
         return said.status == CS_ERR_SCENE ? fail_at(session, said.status, said.message, error)
                                            : cs_fail(error, said.status, "%s", said.message);
-    cs_contact_keys_complete(session->scene.contact, &session->system);
+    cs_contact_keys_complete(session->scene->contact, &session->system);
     if (cs_initial_penetration_resolve(&session->system, &session->initial_penetration, error))
         return error->status;
     if (session->settings.perturbation > 0)
@@ -383,7 +387,9 @@ void cs_session_close(struct cs_session *session) {
     cs_run_finish(&session->run);
     cs_system_finish(&session->system);
     cs_registry_finish(&session->registry);
-    cs_scene_finish(&session->scene);
+    if (session->scene)
+        cs_scene_finish(session->scene);
+    free(session->scene);
     cs_method_finish(&session->method);
     if (session->started_pool)
         cs_pool_stop();

@@ -70,7 +70,7 @@ enum {
 /* Zeroed: closed. Must stay where it is while open. */
 struct cs_session {
     struct cs_session_settings settings; /* their texts are used while opening only */
-    struct cs_scene scene;
+    struct cs_scene *scene;              /* owned; NULL before it is read */
     struct cs_registry registry;
     struct cs_method method;
     struct cs_plan plan;

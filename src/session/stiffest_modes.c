@@ -13,6 +13,7 @@
 #include "base/vector.h"
 #include "model/force/terms.h"
 #include "scene/contact_keys.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>

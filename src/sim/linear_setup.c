@@ -26,6 +26,7 @@
 #include "model/contact/rebound.h"
 #include "model/force/terms.h"
 #include "scene/body_pairs.h"
+#include "scene/scene.h"
 
 #include <clothsim/clones.h>
 #include <string.h>

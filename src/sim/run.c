@@ -1,4 +1,5 @@
 /* run.c - creates a method, advances it frame by frame, and restarts it at events. */
+#include "scene/scene.h"
 #include "sim/run_state.h"
 
 #include "model/contact/bristle_law.h"

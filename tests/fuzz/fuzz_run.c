@@ -5,6 +5,7 @@
 #include "made_scene.h"
 #include "model/plan.h"
 #include "scene/body_particles.h"
+#include "scene/scene.h"
 #include "session/session.h"
 #include "sim/crash.h"
 #include "sim/run_state.h"
@@ -108,8 +109,8 @@ static bool open_run(struct cs_session *session, const char *text, struct choice
         return false;
     }
     choose_options(&choices, &session->method);
-    if (count_particles(&session->scene) <= PARTICLES_MAX &&
-        !cs_plan_check(&session->scene, session->method.integrator, &error) &&
+    if (count_particles(session->scene) <= PARTICLES_MAX &&
+        !cs_plan_check(session->scene, session->method.integrator, &error) &&
         !cs_session_build(session, &error) && !cs_session_begin(session, NULL, &error))
         return true;
     CS_ASSERT(!error.status || *error.message);

@@ -1,6 +1,7 @@
 /* Any bytes as a scene: read or refused with a place, and what was read prints and reads back.
  */
 #include "read_back.h"
+#include "scene/scene.h"
 
 #include <stdint.h>
 #include <string.h>

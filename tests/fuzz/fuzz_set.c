@@ -1,6 +1,7 @@
 /* Any lines as --set of a scene: taken, or refused with the place; what is taken prints and
  * reads back as the same scene. */
 #include "read_back.h"
+#include "scene/scene.h"
 
 #include <stdint.h>
 #include <stdlib.h>

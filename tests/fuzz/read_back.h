@@ -3,6 +3,7 @@
 #define CS_FUZZ_READ_BACK_H
 
 #include "scene/file/scene_read.h"
+#include "scene/scene.h"
 
 #include <string.h>
 

@@ -9,6 +9,7 @@
  * beyond the gate. */
 #include "base/pool.h"
 #include "session/frame_picture.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 #include "shared/image_diff.h"
 
@@ -21,8 +22,8 @@ static int failed;
 static void draw(struct cs_session *session, enum cs_renderer_kind kind, struct cs_image *image,
                  struct cs_error *error) {
     struct cs_picture picture;
-    image->width = (uint32_t)session->scene.render->size[0];
-    image->height = (uint32_t)session->scene.render->size[1];
+    image->width = (uint32_t)session->scene->render->size[0];
+    image->height = (uint32_t)session->scene->render->size[1];
     image->rgb = malloc(3 * (size_t)image->width * image->height);
     if (!image->rgb)
         abort();

@@ -1,5 +1,6 @@
 /* Forces that only tests have: one of each kind, with closed forms. */
 #include "planted_terms.h"
+#include "scene/scene.h"
 
 #include "model/force/terms.h"
 

@@ -5,6 +5,7 @@
 #include "model/contact/barrier_law.h"
 #include "model/contact/step_check.h"
 #include "scene/contact_keys.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -121,7 +121,7 @@ static bool is_behind(const struct cs_posed_collider *box, const double eye[3],
 /* Fails unless every particle is in the picture; returns how many are behind boxes. */
 static uint32_t count_hidden(const struct fixture *cloth, const struct cs_view_state *view,
                              const struct cs_posed_collider *posed) {
-    const struct cs_scene *scene = &cloth->session.scene;
+    const struct cs_scene *scene = cloth->session.scene;
     const float *m = view->block.world_to_clip;
     uint32_t hidden = 0;
     for (size_t i = 0; i < cloth->n; i++) {
@@ -162,7 +162,7 @@ TEST(a_camera_that_nobody_placed_shows_all_of_a_run) {
             const struct cs_bounding_sphere solid =
                 cs_scene_extent_solid(cloth.system, cloth.x, posed);
             const struct cs_frame frame = {.t = cloth.session.run.t, .x = cloth.x};
-            cs_view_move(&view, &cloth.session.scene, &solid, cloth.n, &frame);
+            cs_view_move(&view, cloth.session.scene, &solid, cloth.n, &frame);
             const uint32_t hidden = count_hidden(&cloth, &view, posed);
             if (s >= SQUEEZED)
                 ck_assert_msg(hidden == 0, "scene %zu, frame %d: %u hidden", s, k, hidden);

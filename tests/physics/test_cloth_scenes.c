@@ -244,7 +244,7 @@ static double drape_coefficient(const char *cloth, double density) {
     bool *shadow = calloc(PIXELS * PIXELS, sizeof *shadow);
     size_t dark = 0;
     run_scene(&sheet, "cusick", cloth, density, 180);
-    const struct cs_trimesh *mesh = cs_scene_bodies(&sheet.session.scene)->geometry;
+    const struct cs_trimesh *mesh = cs_scene_bodies(sheet.session.scene)->geometry;
     for (uint32_t t = 0; t < mesh->n_triangles; t++) {
         double p[3][2];
         for (size_t k = 0; k < 3; k++)

@@ -1,6 +1,7 @@
 /* Every force of the list is finite where shapes collapse, and its damping takes energy there.
  */
 #include "contract_fixture.h"
+#include "scene/scene.h"
 
 #include <math.h>
 
@@ -8,7 +9,7 @@
  * point, the normals of all triangles vanish, pairs in contact come to one place. */
 static void collapse(const struct fixture *cloth, const double *from, int axes, double share,
                      double *x) {
-    for (uint32_t b = 0; b < cloth->session.scene.bodies.n; b++) {
+    for (uint32_t b = 0; b < cloth->session.scene->bodies.n; b++) {
         const struct cs_body_range *body = cloth->system->bodies + b;
         for (size_t c = 0; c < 3; c++)
             for (size_t i = c * N + body->first, k = 0; k < body->count; i++, k++) {

@@ -330,9 +330,9 @@ TEST(methods_with_explicit_outer_forces_are_refused) {
     struct cs_error error = {0};
     fixture_open(&ball, "velocity-verlet", BALL);
     struct cs_integrator method = *ball.session.method.integrator;
-    ck_assert_int_eq(cs_plan_check(&ball.session.scene, &method, &error), CS_OK);
+    ck_assert_int_eq(cs_plan_check(ball.session.scene, &method, &error), CS_OK);
     method.traits |= CS_EXPLICIT_OUTER;
-    ck_assert_int_eq(cs_plan_check(&ball.session.scene, &method, &error), CS_ERR_SCENE);
+    ck_assert_int_eq(cs_plan_check(ball.session.scene, &method, &error), CS_ERR_SCENE);
     ck_assert_ptr_nonnull(strstr(error.message, "contact.law"));
     fixture_close(&ball);
 }

@@ -87,7 +87,7 @@ TEST(events_can_change_the_keys) {
                 else
                     snprintf(path, sizeof path, "%s%s", *key, vector ? "[1]" : "");
                 error = (struct cs_error){0};
-                cs_event_key_find(&cloth.session.scene, path, &found, &error);
+                cs_event_key_find(cloth.session.scene, path, &found, &error);
             }
             ck_assert_msg(!error.status, "%s: %s", cs_terms[k]->name, error.message);
         }

@@ -241,7 +241,7 @@ TEST(nothing_without_events) {
     struct fixture cloth;
     fixture_open(&cloth, "velocity-verlet", CLOTH, "");
     ck_assert_ptr_null(cloth.system->events);
-    ck_assert_ptr_eq(cloth.system->scene, &cloth.session.scene);
+    ck_assert_ptr_eq(cloth.system->scene, cloth.session.scene);
     ck_assert(!cloth.session.plan.rows[CS_FEATURE_EVENTS].built);
     ck_assert_uint_eq(cloth.system->plan.rows[CS_FEATURE_EVENTS].bytes, 0);
     fixture_close(&cloth);

@@ -1,5 +1,6 @@
 /* Gas that is shut in by a closed mesh: Boyle's law against closed forms. */
 #include "methods.h"
+#include "scene/scene.h"
 
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
@@ -147,7 +148,7 @@ TEST(a_shell_breathes_at_its_frequency) {
         for (size_t k = 0; k < 3 * n; k++)
             ball.v[k] = 1e-4 * shape[k] / most;
         fixture_start(&ball);
-        ball.session.scene.time.fps = w / 3.14159265358979323846;
+        ball.session.scene->time.fps = w / 3.14159265358979323846;
         fixture_frames(&ball, 1);
         for (size_t k = 0; k < 3 * n; k++)
             error = fmax(error, fabs(ball.v[k] + 1e-4 * shape[k] / most));

@@ -9,6 +9,7 @@
 #include "model/force/terms.h"
 #include "model/plan.h"
 #include "scene/file/scene_read.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -158,7 +159,7 @@ static size_t end_of_crumple(const char *method, struct how how, double state[6 
     struct cs_error error = {0};
     cs_pool_start(how.threads, &error);
     fixture_open(&cloth, method, "%s", crumple);
-    cloth.session.scene.time.fps = how.fps;
+    cloth.session.scene->time.fps = how.fps;
     struct cs_candidates *search = &cloth.system->pairs->candidates;
     search->margin *= how.margin;
     search->is_built = false;

@@ -82,7 +82,7 @@ TEST(same_as_an_impact) {
         }
         /* 8 N on 4 kg for exactly its time */
         const struct cs_event_state *state = dust[1].system->events->states;
-        struct cs_event *impact = dust[1].session.scene.events.items;
+        struct cs_event *impact = dust[1].session.scene->events.items;
         impact->impact.impulse = 8 * (state->end - state->begin);
         for (size_t e = 0; e < 2; e++)
             fixture_frames(dust + e, 15);
@@ -244,10 +244,10 @@ TEST(viewpoint_is_the_cameras_by_default) {
         "{\"at\": 0, \"viewpoint_force\": {\"force\": 1, \"viewpoint\": {\"eye\": [5, 6, 7],"
         " \"fov\": 20, \"aspect\": 1}}}");
     const struct cs_viewpoint *a =
-        &cs_scene_events(&dust.session.scene)[0].viewpoint_force.viewpoint;
+        &cs_scene_events(dust.session.scene)[0].viewpoint_force.viewpoint;
     const struct cs_viewpoint *b =
-        &cs_scene_events(&dust.session.scene)[1].viewpoint_force.viewpoint;
-    const struct cs_camera *camera = dust.session.scene.camera;
+        &cs_scene_events(dust.session.scene)[1].viewpoint_force.viewpoint;
+    const struct cs_camera *camera = dust.session.scene->camera;
     ck_assert_mem_eq(a->eye, camera->eye, sizeof a->eye);
     ck_assert_mem_eq(b->target, camera->target, sizeof a->target);
     ck_assert_mem_eq(b->up, camera->up, sizeof a->up);

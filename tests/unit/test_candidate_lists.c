@@ -6,6 +6,7 @@
 #include "model/force/terms.h"
 #include "pair_positions.h"
 #include "scene/contact_keys.h"
+#include "scene/scene.h"
 #include "sheet.h"
 
 /* --- all pairs --- */

@@ -1,6 +1,7 @@
 /* An unknown key that another program uses leads to the key of a scene for the same thing: the
  * suggestion is a key that the scene then reads, or an option of the command line. */
 #include "scene/file/scene_read.h"
+#include "scene/scene.h"
 #include "unit.h"
 
 #include <stdio.h>

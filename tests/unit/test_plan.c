@@ -3,6 +3,7 @@
 
 #include "model/force/terms.h"
 #include "model/plan.h"
+#include "scene/scene.h"
 #include "sheet.h"
 
 #define CLOTH(more)                                                                            \

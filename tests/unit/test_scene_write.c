@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "scene/file/json.h"
 #include "scene/file/scene_read.h"
+#include "scene/scene.h"
 #include "unit.h"
 
 #include <math.h>

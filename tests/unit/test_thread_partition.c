@@ -2,6 +2,7 @@
  * chunks with every spring once, springs around every particle. */
 #include "base/pool.h"
 #include "model/plan.h"
+#include "scene/scene.h"
 #include "sheet.h"
 
 #define CLOTH "{\"cloth\": {\"grid\": [%d, %d]}, \"mass\": {\"total\": 1}}"

@@ -2,6 +2,7 @@
 #include "advise/advise.h"
 
 #include "session/process_pool.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 
 #include <math.h>
@@ -250,7 +251,7 @@ static enum cs_status advise_task(void *ctx, uint32_t task, struct cs_error *err
     struct cs_session session;
     struct cs_sampled_run_settings settings = {
         .session = advise->session, .seconds = advise->seconds, .samples = SAMPLES};
-    const double frame = 1 / advise->was_opened.scene.time.fps;
+    const double frame = 1 / advise->was_opened.scene->time.fps;
     settings.session.perturbation =
         PERTURBATION * cs_diagnostics_shortest(&advise->was_opened.system);
     settings.session.run.pot = &advice->pot;

@@ -12,6 +12,7 @@
 #include "cli/manifest.h"
 #include "cli/run_folder.h"
 #include "session/process_pool.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/compare/compare.h"

@@ -37,7 +37,7 @@ static enum cs_status make_key(const struct cs_stability *stability, char key[CS
     const struct cs_session *session = &stability->session;
     char scene[CS_HASH_DIGITS], start[CS_HASH_DIGITS];
     struct cs_text all = {0};
-    if (cs_scene_hash(&session->scene, &session->method.table, session->method.options, scene,
+    if (cs_scene_hash(session->scene, &session->method.table, session->method.options, scene,
                       error))
         return error->status;
     cs_hash_doubles(session->system.state, 6 * (size_t)session->system.view.n, start);

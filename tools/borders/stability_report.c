@@ -155,10 +155,10 @@ static void add_watch(const struct cs_stability *stability, struct cs_text *out)
 void cs_stability_print_table(const struct cs_stability *stability, struct cs_text *out) {
     const struct cs_stability_settings *settings = stability->settings;
     cs_text_add(out, "%s on ", stability->series);
-    cs_text_add_plain(out, stability->session.scene.path);
+    cs_text_add_plain(out, stability->session.scene->path);
     cs_text_add(out, ": %.6g s per cell, dt [s] against %s [%s]", settings->seconds,
                 cs_axis_names[settings->axis], cs_axis_unit(settings->axis));
-    cs_contact_note_add(&stability->session.scene, "; ", out);
+    cs_contact_note_add(stability->session.scene, "; ", out);
     cs_text_add(out, "\n\n");
     cs_text_add(out, "%-*s", NAME_WIDTH, cs_axis_names[settings->axis]);
     for (uint32_t c = 0; c < stability->n_columns; c += stride(stability->n_columns))
@@ -309,8 +309,9 @@ void cs_stability_print_json(const struct cs_stability *stability, struct cs_tex
     cs_json_write(out,
                   "{\n  'scene': %s,\n  'series': %s,\n  'integrator': %s,\n  'axis': %s,\n"
                   "  'seconds': %g,\n  'columns': [",
-                  stability->session.scene.path, stability->series, stability->integrator->name,
-                  cs_axis_names[settings->axis], settings->seconds);
+                  stability->session.scene->path, stability->series,
+                  stability->integrator->name, cs_axis_names[settings->axis],
+                  settings->seconds);
     for (uint32_t c = 0; c < stability->n_columns; c++)
         add_json_column(stability, c, out);
     cs_text_add(out, "\n  ]\n}\n");

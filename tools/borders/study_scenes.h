@@ -1,8 +1,9 @@
-/* study_scenes.h - scenes of studies of stability: one value of a scene varied over the columns
- * of a map. */
+/* study_scenes.h - the struct of a scene, for studies and commands that look into it; and
+ * scenes of studies of stability: one value of a scene varied over the columns of a map. */
 #ifndef CS_STUDY_SCENES_H
 #define CS_STUDY_SCENES_H
 
+#include "session/scene_view.h"
 #include "session/session.h"
 
 /* Values that a map can vary. */

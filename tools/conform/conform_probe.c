@@ -3,6 +3,7 @@
 #include "conform/conform_checks.h"
 
 #include "base/options.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 #include "study/stability_verdict.h"
 
@@ -193,14 +194,14 @@ bool cs_probe_open(struct cs_probe *probe, const struct cs_conform *conform,
     if (probe->has_ended)
         return false;
     if (method->traits & CS_SMOOTH_ONLY &&
-        cs_plan_check(&probe->session.scene, method, &probe->error)) {
+        cs_plan_check(probe->session.scene, method, &probe->error)) {
         *conform->refused = probe->has_ended = true;
         return false;
     }
     probe->n = probe->session.system.view.n;
     probe->x = probe->session.system.state;
     probe->v = probe->x + 3 * probe->n;
-    probe->frame = 1 / probe->session.scene.time.fps;
+    probe->frame = 1 / probe->session.scene->time.fps;
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include "base/options.h"
 #include "cli/line/print.h"
 #include "export/export.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 #include "study/compare/compare_cell.h"
 

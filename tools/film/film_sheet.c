@@ -9,6 +9,7 @@
 #include "draw/srgb.h"
 #include "export/npy.h"
 #include "session/frame_picture.h"
+#include "session/scene_view.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -196,7 +196,7 @@ enum cs_status cs_provenance_add_changes(const struct cs_provenance *provenance,
                                          struct cs_error *error) {
     char hash[CS_HASH_DIGITS];
     const char *fault = cs_provenance_text(provenance->json, "arithmetic");
-    if (cs_scene_hash(&session->scene, &session->method.table, session->method.options, hash,
+    if (cs_scene_hash(session->scene, &session->method.table, session->method.options, hash,
                       error))
         return error->status;
     cs_provenance_add_change("the version of clothsim", provenance->version, CS_VERSION, out);

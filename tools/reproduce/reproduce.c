@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "session/frame_picture.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 #include "shared/image_diff.h"
 
@@ -210,7 +211,7 @@ static enum cs_status draw(struct work *work, const struct cs_image *then, const
     if (strcmp(hash, pixels) != 0)
         cs_text_add(&work->reproduction->notes,
                     "the pixels in the file have changed since it was written\n");
-    const struct cs_render *render = work->session.scene.render;
+    const struct cs_render *render = work->session.scene->render;
     /* as the run had it: colours are not laid on white then */
     if (render->background.kind == CS_BACKGROUND_NONE &&
         !(now.alpha = malloc((size_t)render->size[0] * (size_t)render->size[1])))

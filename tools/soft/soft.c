@@ -86,8 +86,8 @@ static enum cs_status time_steps(const struct cs_soft *soft, struct cs_run *run,
 static enum cs_status time_pictures(struct cs_session *session, struct cs_soft_row *row,
                                     struct cs_error *error) {
     struct cs_picture picture = {0};
-    struct cs_image image = {(uint32_t)session->scene.render->size[0],
-                             (uint32_t)session->scene.render->size[1], NULL, NULL};
+    struct cs_image image = {(uint32_t)session->scene->render->size[0],
+                             (uint32_t)session->scene->render->size[1], NULL, NULL};
     double samples[PICTURES];
     image.rgb = malloc(3 * (size_t)image.width * image.height);
     if (!image.rgb)

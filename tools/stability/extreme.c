@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "session/perturb.h"
 #include "session/process_pool.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 #include "stability/extreme_scenes.h"
 
@@ -35,7 +36,7 @@ static void step(struct cs_extreme_row *row, struct cs_session *session, double 
     struct cs_run_result result;
     struct cs_text text = {0};
     struct cs_follow follow = {
-        .run = run, .last = cs_follow_frames(&session->scene, seconds), .every = 1};
+        .run = run, .last = cs_follow_frames(session->scene, seconds), .every = 1};
     if (cs_energy_monitor_begin(&monitor, run, error))
         return;
     while (cs_follow_next(&follow, error)) {

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "scene/file/json.h"
+#include "session/scene_view.h"
 
 #include <dirent.h>
 #include <errno.h>

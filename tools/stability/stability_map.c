@@ -8,6 +8,7 @@
 #include "cli/manifest.h"
 #include "cli/run_folder.h"
 #include "cli/show/screen.h"
+#include "session/scene_view.h"
 #include "shared/table_plot.h"
 
 #include <stdio.h>
@@ -43,7 +44,7 @@ static enum cs_status make_plot(const struct cs_stability_options *options,
     cs_series_file_name(stability->series, name);
     snprintf(path, sizeof path, "%s/%s.csv", options->map.folder, name);
     snprintf(title, sizeof title, "%s: stable time steps, %.255s, %g s of motion per cell",
-             stability->series, stability->session.scene.path, stability->settings->seconds);
+             stability->series, stability->session.scene->path, stability->settings->seconds);
     cs_plot_begin(plot, title, 1.35 * CS_WIDTH_COLUMN);
     return cs_table_plot_read(plot, &table, path, error);
 }

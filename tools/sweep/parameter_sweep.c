@@ -2,6 +2,7 @@
 #include "sweep/parameter_sweep.h"
 
 #include "session/process_pool.h"
+#include "session/scene_view.h"
 #include "sweep/sweep_cell.h"
 
 #include <stdio.h>

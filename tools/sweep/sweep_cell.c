@@ -212,7 +212,7 @@ static void add_meaning(struct cs_sweep_cell *cell, struct cs_text *all,
     struct cs_session *session = &cell->session;
     const struct cs_registry_entry *found;
     char scene[CS_HASH_DIGITS] = "", module[CS_HASH_DIGITS] = "";
-    if (cs_scene_hash(&session->scene, &session->method.table, session->method.options, scene,
+    if (cs_scene_hash(session->scene, &session->method.table, session->method.options, scene,
                       error) ||
         cs_registry_find(&session->registry, session->method.integrator->name, &found, error) ||
         cs_hash_file(found->file, NULL, module, error))

@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 #include "study/stability_verdict.h"
 

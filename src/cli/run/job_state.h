@@ -15,8 +15,6 @@
 #include "session/session.h"
 #include "study/stability_verdict.h"
 
-#include <math.h>
-
 /* The option --trace; zeroed: none. Must not move in memory while the run lasts. */
 struct cs_run_trace {
     bool is_requested;
@@ -51,15 +49,7 @@ struct cs_job_settings {
 };
 
 /* Number of frames to simulate; by default one second, at least one frame. */
-static inline uint32_t cs_job_frames(const struct cs_job_settings *settings,
-                                     const struct cs_scene *scene) {
-    const double second = floor(scene->time.fps + 0.5);
-    if (settings->seconds > 0)
-        return (uint32_t)fmin(cs_follow_frames(scene, settings->seconds), CS_FRAMES_MAX);
-    return settings->frames != CS_FRAMES_DEFAULT ? settings->frames
-           : second < 1                          ? 1
-                                                 : (uint32_t)second;
-}
+uint32_t cs_job_frames(const struct cs_job_settings *settings, const struct cs_scene *scene);
 
 /* True if the report is written as JSON: beside pictures, or on request. */
 static inline bool cs_job_wants_json(const struct cs_job_settings *settings) {

@@ -5,6 +5,7 @@
 #include "base/options.h"
 #include "cli/line/print.h"
 #include "session/provenance_write.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 
 #include <math.h>
@@ -14,12 +15,12 @@
 /* Prints the scene with every value, its hash, the method, and the provenance. */
 static enum cs_status describe(struct cs_job *job, struct cs_error *error) {
     struct cs_session *session = &job->session;
-    cs_scene_print(&session->scene, &session->method.table, session->method.options, 2,
+    cs_scene_print(session->scene, &session->method.table, session->method.options, 2,
                    &job->scene);
     cs_method_describe(&session->method, &job->method);
     if (job->scene.failed || job->method.failed)
         return cs_fail(error, CS_ERR_MEMORY, "out of memory for the resolved scene");
-    if (cs_scene_hash(&session->scene, &session->method.table, session->method.options,
+    if (cs_scene_hash(session->scene, &session->method.table, session->method.options,
                       job->scene_hash, error) ||
         !cs_job_wants_json(job->settings))
         return error->status;
@@ -223,7 +224,7 @@ static enum cs_status warn(struct cs_job *job, struct cs_error *error) {
     struct cs_scene_findings findings;
     struct cs_text out = {0};
     warn_of_options(job, &out);
-    if (!cs_scene_doctor_check(session, job->frames / session->scene.time.fps, &findings,
+    if (!cs_scene_doctor_check(session, job->frames / session->scene->time.fps, &findings,
                                error)) {
         cs_print_lines("clothsim: warning: ", cs_text_get(&findings.warnings), &out);
         if (!job->settings->quiet)
@@ -257,11 +258,11 @@ enum cs_status cs_job_run(struct cs_job *job, const struct cs_job_settings *sett
         cs_checkpointer_check_interval(&job->session, &settings->checkpoint, error) ||
         cs_run_outputs_check(job, error) || cs_run_outputs_open(job, error))
         return error->status;
-    const double covering = cs_follow_frames(&job->session.scene, settings->seconds);
+    const double covering = cs_follow_frames(job->session.scene, settings->seconds);
     if (covering > CS_FRAMES_MAX)
         return cs_fail(error, CS_ERR_USAGE, "--time: %g s are more than %d frames",
                        settings->seconds, (int)CS_FRAMES_MAX);
-    job->frames = cs_job_frames(settings, &job->session.scene);
+    job->frames = cs_job_frames(settings, job->session.scene);
     if (warn(job, error) || begin_job(job, error))
         return error->status;
     job->failure = run_frames(job, error) == CS_ERR_MODULE ? error->message : NULL;

@@ -5,6 +5,7 @@
 #include "cli/line/print.h"
 #include "cli/run/job_state.h"
 #include "session/provenance_write.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 
 #include <cjson/cJSON.h>
@@ -273,7 +274,7 @@ static enum cs_status frame(struct cs_job *job, struct cs_error *error) {
     if (job->crossings.is_counted)
         cs_json_write(&row, ", 'crossings': %llu",
                       (unsigned long long)job->crossings.last_count);
-    if (drawn && cs_picture_is_coloured(&job->session.scene))
+    if (drawn && cs_picture_is_coloured(job->session.scene))
         cs_json_write(&row, ", 'range': [%g, %g]", picture->range[0], picture->range[1]);
     cs_text_add(&row, "},\n");
     return cs_row_log_add(&job->frame_log, &row, error);

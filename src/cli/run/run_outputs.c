@@ -36,7 +36,7 @@ static void claim_input(void *ctx, const char *path, const char *what) {
 /* Registers the files that the run reads: the scene's files and the modules. */
 static void claim_inputs(const struct cs_session *session,
                          struct cs_file_conflicts *conflicts) {
-    cs_scene_each_file(&session->scene, claim_input, conflicts);
+    cs_scene_each_file(session->scene, claim_input, conflicts);
     for (uint32_t k = 0; k < session->settings.n_plugins; k++)
         cs_file_conflicts_input(conflicts, session->settings.plugins[k], "a module");
 }

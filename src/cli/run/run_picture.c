@@ -6,6 +6,7 @@
 #include "base/pool.h"
 #include "cli/run/job_state.h"
 #include "session/provenance_write.h"
+#include "session/scene_view.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -34,7 +35,7 @@ static enum cs_status open_renderer(struct cs_job *job, struct cs_error *error) 
  * interval of its checkpoint. */
 static enum cs_status begin_picture(struct cs_job *job, struct cs_error *error) {
     const struct cs_job_settings *settings = job->settings;
-    const struct cs_render *render = job->session.scene.render;
+    const struct cs_render *render = job->session.scene->render;
     if (!settings->session.render)
         return CS_OK;
     const struct cs_frame_writer_settings frames = {
@@ -80,7 +81,7 @@ static enum cs_status give(struct cs_job *job, struct cs_error *error) {
     snprintf(frame, sizeof frame, "%u", picture->frame);
     cs_hash_bytes(picture->image->rgb, cs_image_bytes(picture->image), pixels);
     cs_text_add_real(&time, picture->time);
-    print_range(picture, &job->session.scene, &range);
+    print_range(picture, job->session.scene, &range);
     cs_report_print_error(job, picture->frame, picture->local_error, &error_line);
     const struct cs_png_text texts[] = {
         {"Software", "clothsim " CS_VERSION},

@@ -6,11 +6,22 @@
 #include "draw/camera_fit.h"
 #include "session/energy_monitor.h"
 #include "session/frame_picture.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+uint32_t cs_job_frames(const struct cs_job_settings *settings, const struct cs_scene *scene) {
+    const double second = floor(scene->time.fps + 0.5);
+    if (settings->seconds > 0)
+        return (uint32_t)fmin(cs_follow_frames(scene, settings->seconds), CS_FRAMES_MAX);
+    return settings->frames != CS_FRAMES_DEFAULT ? settings->frames
+           : second < 1                          ? 1
+                                                 : (uint32_t)second;
+}
 
 /* The preliminary run and its figures. */
 struct search {
@@ -46,7 +57,7 @@ static enum cs_status sample_frame(struct search *search, uint32_t frames, uint3
 
 /* Refuses --range for a look whose colours show no value. */
 static enum cs_status check(const struct cs_session *session, struct cs_error *error) {
-    const struct cs_scene *scene = &session->scene;
+    const struct cs_scene *scene = session->scene;
     if (!cs_picture_is_coloured(scene))
         return cs_fail(error, CS_ERR_USAGE,
                        "--range: the look \"%s\" shows no values; \"force\" and \"strain\" do",
@@ -65,11 +76,11 @@ static enum cs_status search_range(const struct cs_job_settings *settings, char 
                        "--range auto runs the scene twice: SCENE must be a file, not -");
     if (cs_session_open(session, &settings->session, error))
         return error->status;
-    const uint32_t frames = cs_job_frames(settings, &session->scene);
+    const uint32_t frames = cs_job_frames(settings, session->scene);
     if (!check(session, error) &&
         !allocate_bounds(&search, frames / settings->frame_interval, error) &&
         !sample_frame(&search, frames, settings->frame_interval, error)) {
-        cs_picture_range(&session->scene, cs_diagnostics_magnitude(search.most, search.n),
+        cs_picture_range(session->scene, cs_diagnostics_magnitude(search.most, search.n),
                          range);
         if (range[0] < range[1])
             snprintf(value, 80, "[%.9g,%.9g]", range[0], range[1]);
@@ -135,7 +146,7 @@ static enum cs_status search_instability(const struct cs_job_settings *settings,
         return error->status;
     struct cs_run *run = &session.run;
     struct cs_follow follow = {
-        .run = run, .last = cs_job_frames(settings, &session.scene), .every = 1};
+        .run = run, .last = cs_job_frames(settings, session.scene), .every = 1};
     const struct cs_energy_monitor_row *first = &monitor.first;
     if (!cs_energy_monitor_begin(&monitor, run, error))
         while (first->verdict == CS_STABILITY_BOUNDED && cs_follow_next(&follow, error))

@@ -3,7 +3,7 @@
 
 #include "base/pool.h"
 #include "cli/line/print.h"
-#include "session/session.h"
+#include "session/scene_view.h"
 
 #include <stdio.h>
 #include <sys/resource.h>
@@ -217,14 +217,15 @@ static void add_stages(const struct cs_job *job, struct cs_text *out) {
 
 /* A triangle that outgrew its contact samples, and the key that gives it more: cloth that is
  * held off stretches further, by a tenth in a trial. */
-static void add_gap(const struct cs_outgrown_samples *gap, struct cs_text *out) {
+static void add_gap(const struct cs_energy_monitor *monitor, struct cs_text *out) {
     struct cs_text line = {0};
-    if (!(gap->depth > 0))
+    if (!(monitor->gap_depth > 0))
         return;
     cs_text_add(&line,
                 "a triangle came %.3g m into colliders[%u] between contact samples: edges were "
                 "%.3g times as long as at the start, expected contact.sample_stretch %.2g",
-                gap->depth, gap->collider, gap->stretch, 1.1 * gap->stretch);
+                monitor->gap_depth, monitor->gap_collider, monitor->gap_stretch,
+                1.1 * monitor->gap_stretch);
     cs_print_hanging("note", cs_text_get(&line), VALUE_COLUMN, out);
     cs_text_finish(&line);
 }
@@ -243,7 +244,7 @@ static void add_files(const struct cs_job *job, struct cs_text *out) {
 
 static void add_rows(const struct cs_job *job, struct cs_text *out) {
     const struct cs_run *run = &job->session.run;
-    add_report_row(out, "scene", "%s", job->session.scene.path);
+    add_report_row(out, "scene", "%s", job->session.scene->path);
     cs_print_hanging("method", cs_text_get(&job->method), VALUE_COLUMN, out);
     struct cs_text choice = {0};
     cs_session_print_choice(&job->session, &choice);
@@ -263,7 +264,7 @@ static void add_rows(const struct cs_job *job, struct cs_text *out) {
     }
     for (uint32_t i = 0; i < run->n_notes; i++)
         cs_print_hanging("note", run->notes[i], VALUE_COLUMN, out);
-    add_gap(&job->monitor.gap, out);
+    add_gap(&job->monitor, out);
     add_files(job, out);
     add_report_row(out, "state hash", "%s", job->hash);
 }

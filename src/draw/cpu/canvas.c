@@ -13,6 +13,7 @@
 #include "draw/overlay.h"
 #include "draw/view.h"
 #include "scene/picture_keys.h"
+#include "scene/scene.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>

@@ -6,6 +6,7 @@
 #include "base/vector.h"
 #include "mesh/trimesh.h"
 #include "scene/contact_keys.h"
+#include "scene/scene.h"
 
 #include <clothsim/clones.h>
 #include <math.h>

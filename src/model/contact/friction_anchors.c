@@ -5,6 +5,7 @@
 #include "base/vec3.h"
 #include "model/contact/contact_samples.h"
 #include "scene/body_pairs.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,6 +8,7 @@
 #include "base/vec3.h"
 #include "model/force/term.h"
 #include "scene/contact_keys.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>

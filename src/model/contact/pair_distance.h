@@ -40,7 +40,6 @@
 #define CS_CONTACT_PAIR_DISTANCE_H
 
 #include "base/vec3.h"
-#include "scene/shape_core.h"
 
 #include <float.h>
 

@@ -1,5 +1,6 @@
 /* Copies particles beside the vertices of mesh colliders, which are posed like any collider. */
 #include "model/contact/contact_samples.h"
+#include "scene/scene.h"
 
 #include "model/contact/posed_collider.h"
 

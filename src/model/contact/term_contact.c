@@ -8,6 +8,7 @@
 #include "model/contact/rebound.h"
 #include "model/force/term.h"
 #include "scene/body_pairs.h"
+#include "scene/scene.h"
 
 #include <clothsim/clones.h>
 #include <math.h>

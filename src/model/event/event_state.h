@@ -7,6 +7,7 @@
 #include "base/serialise.h"
 #include "model/system/particle_system.h"
 #include "scene/event_key.h"
+#include "scene/scene.h"
 
 struct cs_event;
 struct cs_event_target;

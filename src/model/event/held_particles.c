@@ -19,8 +19,8 @@
 
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
-#include "scene/body_keys.h"
 #include "scene/body_pairs.h"
+#include "scene/check.h"
 #include "scene/collider_keys.h"
 #include "scene/force_keys.h"
 

@@ -5,6 +5,7 @@
  *
  *   dn = (I - n n^T) dN / |N|,   d(a x b) = da x b + a x db */
 #include "model/force/terms.h"
+#include "scene/scene.h"
 
 #include "base/vec3.h"
 #include "base/vector.h"

@@ -1,6 +1,7 @@
 /* Springs with dampers as a term: the kernels of springs.h. */
 #include "model/force/term.h"
 #include "scene/body_particles.h"
+#include "scene/scene.h"
 
 /* the plan has a line for springs, with the bytes of their arrays */
 static struct cs_plan_row plan_springs(const struct cs_scene *scene) {

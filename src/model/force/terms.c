@@ -3,6 +3,7 @@
 
 #include "base/pool.h"
 #include "base/vector.h"
+#include "scene/scene.h"
 
 #include <string.h>
 

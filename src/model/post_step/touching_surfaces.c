@@ -4,6 +4,7 @@
 #include "model/contact/contact_samples.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/post_step/contact_projection.h"
+#include "scene/scene.h"
 
 /* m: surfaces this close touch. No side of the other one can be told from rounding then, so
  * the force has no direction, and continuous collision detection admits no motion. */

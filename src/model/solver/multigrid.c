@@ -16,6 +16,7 @@
 #include "scene/body_pairs.h"
 #include "scene/body_particles.h"
 #include "scene/elastic_keys.h"
+#include "scene/scene.h"
 
 #include <clothsim/clones.h>
 

@@ -13,7 +13,6 @@
 #define CS_SPRING_RUNS_H
 
 #include "base/arena.h"
-#include "scene/scene.h"
 
 #include <clothsim/system.h>
 

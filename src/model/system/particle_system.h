@@ -6,7 +6,6 @@
 #include "base/arena.h"
 #include "base/text.h"
 #include "model/spring/springs.h"
-#include "scene/scene.h"
 
 #include <clothsim/integrator.h>
 #include <stdbool.h>
@@ -64,6 +63,7 @@ struct cs_plan {
     struct cs_plan_row forces[CS_TERMS_MAX]; /* of the list in terms.h; why NULL: not printed */
 };
 
+struct cs_scene;
 struct cs_term;
 struct cs_trimesh;
 

@@ -3,7 +3,8 @@
 #define CS_SHAPE_CLUSTERS_H
 
 #include "base/arena.h"
-#include "scene/scene.h"
+
+#include <stdint.h>
 
 struct cs_body;
 struct cs_shape_clusters;

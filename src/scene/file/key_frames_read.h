@@ -12,7 +12,8 @@
 #define CS_KEY_FRAMES_READ_H
 
 #include "mesh/trimesh.h"
-#include "scene/scene.h"
+
+#include <clothsim/option.h>
 
 struct cs_collider;
 struct cs_key_frames;

@@ -4,7 +4,6 @@
 #define CS_MESH_READ_H
 
 #include "scene/file/obj_read.h"
-#include "scene/scene.h"
 
 struct cs_collider;
 struct cs_mesh_source;

@@ -8,6 +8,7 @@
 #include "scene/contact_keys.h"
 #include "scene/file/json_context.h"
 #include "scene/picture_keys.h"
+#include "scene/scene.h"
 
 #include <errno.h>
 #include <stdbool.h>

@@ -5,7 +5,9 @@
 #include "base/hash.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "scene/scene.h"
+
+struct cs_scene;
+struct cs_table;
 
 /* One --set: a JSON path, and a JSON value or a bare word, which is taken as a text. */
 struct cs_override {

@@ -7,6 +7,7 @@
 #include "base/json_writer.h"
 #include "session/process_pool.h"
 #include "session/provenance_write.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 #include "study/compare/cell_list_parse.h"
 #include "study/reference/compare_reference_state.h"
@@ -27,7 +28,7 @@ static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_err
     asked.integrator = "velocity-verlet";
     /* opened as it is first: the smooth form no longer has what it leaves out */
     if (!cs_session_open_plan(&session, &asked, error))
-        cs_recorded_run_describe_changes(&session.scene, &compare->switched_off);
+        cs_recorded_run_describe_changes(session.scene, &compare->switched_off);
     cs_session_close(&session);
     if (!error->status &&
         !cs_recorded_run_open(&recording, settings, asked.integrator, error)) {
@@ -38,13 +39,13 @@ static enum cs_status read_scene_facts(struct cs_compare *compare, struct cs_err
         cs_text_finish(&scene);
         compare->particles = system->view.n;
         compare->springs = recording.session.plan.n_springs;
-        compare->fps = recording.session.scene.time.fps;
+        compare->fps = recording.session.scene->time.fps;
         /* above 0, because default steps are derived from it */
         compare->omega = fmax(system->view.omega, 1e-3);
         compare->pass_seconds = cs_pass_seconds(system);
         compare->time = settings->frames / compare->fps;
-        compare->contact = recording.session.scene.colliders.n > 0 ||
-                           cs_scene_has_body_contact(&recording.session.scene);
+        compare->contact = recording.session.scene->colliders.n > 0 ||
+                           cs_scene_has_body_contact(recording.session.scene);
         compare->n_event_times = cs_recorded_run_count_stops(&recording, compare->time);
     }
     cs_recorded_run_close(&recording);

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "session/frame_picture.h"
+#include "session/scene_view.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -123,7 +124,7 @@ static enum cs_status draw_tile(const struct sheet *sheet, const struct cs_cell 
     cs_cell_integrator(cell, integrator, sizeof integrator);
     if (cs_recorded_run_open(&recording, &tile.compare->settings->run, integrator, error))
         return error->status;
-    struct cs_render *render = recording.session.scene.render;
+    struct cs_render *render = recording.session.scene->render;
     render->size[0] = TILE_WIDTH;
     render->size[1] = TILE_HEIGHT;
     render->look = CS_LOOK_FORCE; // colours of what has no sign

@@ -106,7 +106,7 @@ enum cs_status cs_mesh_study_begin(struct cs_mesh_study *study, const char *rang
     asked.integrator = "velocity-verlet";
     if (cs_session_open_plan(&opened, &asked, error))
         return error->status;
-    make_levels(study, low, session, &opened.scene, error);
+    make_levels(study, low, session, opened.scene, error);
     cs_session_close(&opened);
     return error->status;
 }

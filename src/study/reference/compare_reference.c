@@ -1,4 +1,5 @@
 /* Computes the verified reference: four runs, their differences, and whether they agree. */
+#include "session/scene_view.h"
 #include "study/reference/compare_reference_state.h"
 
 #include <math.h>

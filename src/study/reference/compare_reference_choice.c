@@ -1,5 +1,6 @@
 /* Chooses two families of methods for a reference, and tightens their settings. */
 #include "session/recorded_run.h"
+#include "session/scene_view.h"
 #include "study/reference/compare_reference_state.h"
 
 #include <math.h>
@@ -80,7 +81,7 @@ static enum cs_status measure_scale(const struct cs_compare_reference_settings *
     struct cs_recorded_run recording;
     if (!cs_recorded_run_open(&recording, settings->run, "velocity-verlet", error)) {
         const struct cs_system *system = &recording.session.system;
-        const double fps = recording.session.scene.time.fps,
+        const double fps = recording.session.scene->time.fps,
                      omega = fmax(system->view.omega, 1);
         const double passes = EXPLICIT_PASSES * omega * settings->run->frames / fps;
         scale->is_implicit = passes * cs_pass_seconds(system) > settings->explicit_seconds;

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "session/scene_view.h"
 #include "session/session.h"
 
 #include <stdio.h>
@@ -29,7 +30,7 @@ enum cs_status cs_compare_reference_key(const struct cs_compare_reference *refer
                                         const struct cs_compare_reference_settings *settings,
                                         char *key, struct cs_error *error) {
     const struct cs_session_settings *session = &settings->run->session;
-    const struct cs_scene *scene = &recording->session.scene;
+    const struct cs_scene *scene = recording->session.scene;
     const size_t values = 6 * (size_t)recording->session.system.view.n;
     const struct cs_method *method = &recording->session.method;
     char start[CS_HASH_DIGITS], of_scene[CS_HASH_DIGITS];

@@ -11,6 +11,7 @@
 #include "model/contact/step_check.h"
 #include "model/system/surfaces.h"
 #include "scene/body_pairs.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>

@@ -18,6 +18,7 @@
 #include "model/contact/narrow_phase/contact_pairs.h"
 #include "model/system/seams.h"
 #include "scene/body_pairs.h"
+#include "scene/scene.h"
 
 #include <string.h>
 

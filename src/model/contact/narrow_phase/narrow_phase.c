@@ -21,6 +21,7 @@
 #include "model/contact/lagged_friction.h"
 #include "model/contact/narrow_phase/pair_lanes.h"
 #include "scene/contact_keys.h"
+#include "scene/scene.h"
 
 #include <string.h>
 
