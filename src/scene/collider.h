@@ -5,7 +5,7 @@
  * has no distance here: bodies meet its features in pairs (model/contact/narrow_phase), and
  * model/contact/contact_samples.h gives the positions of its vertices.
  *
- * A new shape needs: its keys and its line in CS_SHAPE_LIST (collider_keys.h), shape_NAME.c
+ * A new shape needs: its keys and its line in CS_SOLID_LIST (collider_keys.h), shape_NAME.c
  * with cs_NAME_keys and cs_shape_NAME, and that file in meson.build.
  */
 #ifndef CS_COLLIDER_H
