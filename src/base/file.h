@@ -11,8 +11,6 @@
 #include "base/status.h"
 #include "base/text.h"
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 
 enum { CS_FILE_NAME_BYTES = 256 };

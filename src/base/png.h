@@ -7,9 +7,6 @@
 #include "base/image.h"
 #include "base/status.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-
 /* One text chunk: the provenance of a picture. */
 struct cs_png_text {
     const char *key, *value; /* Latin-1, key at most 79 characters */

@@ -9,8 +9,6 @@
 #include "base/text.h"
 
 #include <endian.h>
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 

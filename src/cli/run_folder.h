@@ -7,9 +7,6 @@
 #include "cli/line/args.h"
 #include "session/session.h"
 
-#include <stdbool.h>
-#include <stdint.h>
-
 /* Predicates on file names that a run writes: numbered frame_*.png, run.json, run.checkpoint
  * and exports; or numbered x_*.npy and v_*.npy; and manifest.txt. */
 bool cs_output_is_result(const char *name);

@@ -10,7 +10,6 @@
 #include "base/arena.h"
 #include "base/text.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 
 /* Widths in mm: of one and of two columns of a journal. */

@@ -5,7 +5,6 @@
 #include "base/arena.h"
 #include "draw/render.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 
 /* Anti-aliased lines and dots of any width, collected and drawn in one call. */

@@ -8,7 +8,6 @@
 #include "model/contact/posed_collider.h"
 
 struct cs_material;
-struct cs_scene;
 
 /* Source of the colours of bodies. */
 enum cs_look_colours {

@@ -5,8 +5,6 @@
 #include "base/arena.h"
 #include "draw/render.h"
 
-#include <stdbool.h>
-
 /* A vertex: position in m, unit normal, value of the look (0..1, or slope of a fold). */
 struct cs_vertex {
     float position[3], normal[3], value;

@@ -15,8 +15,6 @@
 #include "model/contact/posed_collider.h"
 #include "model/system/particle_system.h"
 
-#include <stdbool.h>
-
 struct cs_canvas;
 
 /* Inputs of a canvas that stay the same for all its pictures. */

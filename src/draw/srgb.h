@@ -16,8 +16,6 @@
 #include <clothsim/clones.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 enum { CS_SAMPLES = 8 }; /* of a pixel; fewer are repeated */
 

@@ -8,8 +8,6 @@
 #include "model/system/particle_system.h"
 #include "scene/picture_keys.h"
 
-#include <stdbool.h>
-
 enum { CS_VIEW_BINDING = 0, CS_VIEW_STOPS = 6 };
 
 /* A light in the uniform block View. */

@@ -11,8 +11,6 @@
 #include "base/status.h"
 #include "session/export_mesh.h"
 
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
 /* Paths of exported files. */

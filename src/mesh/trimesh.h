@@ -5,9 +5,6 @@
 #include "base/arena.h"
 #include "base/hash.h"
 
-#include <stdbool.h>
-#include <stdint.h>
-
 /* Generated meshes; each fits a cube of side 1 about the origin. */
 enum cs_mesh_shape {
     CS_MESH_BOX,

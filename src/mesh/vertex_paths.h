@@ -20,9 +20,6 @@
 #include "base/arena.h"
 #include "base/hash.h"
 
-#include <stdbool.h>
-#include <stdint.h>
-
 enum cs_paths_end { CS_PATHS_HOLD, CS_PATHS_LOOP, CS_PATHS_CONTINUE };
 
 /* Paths of n vertices through n_keys >= 2 keys. The arrays belong to the arena of their maker.

@@ -2,7 +2,6 @@
  * of a body's elastic keys. The rows of these are in elastic_keys.c, those of meshes and
  * placements in mesh_keys.c. */
 #include "scene/body_keys.h"
-#include "scene/check.h"
 #include "scene/table_rows.h"
 
 #include <stdio.h>

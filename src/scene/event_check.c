@@ -5,7 +5,6 @@
 #include "base/vec3.h"
 #include "scene/body_keys.h"
 #include "scene/body_particles.h"
-#include "scene/check.h"
 #include "scene/event_key.h"
 #include "scene/force_keys.h"
 #include "scene/picture_keys.h"

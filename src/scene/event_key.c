@@ -9,7 +9,6 @@
 #include "scene/force_keys.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 

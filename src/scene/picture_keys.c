@@ -2,7 +2,6 @@
 #include "scene/picture_keys.h"
 #include "scene/body_keys.h"
 #include "scene/body_particles.h"
-#include "scene/check.h"
 #include "scene/force_keys.h"
 #include "scene/table_rows.h"
 

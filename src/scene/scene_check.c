@@ -3,7 +3,6 @@
 #include "scene/body_keys.h"
 #include "scene/body_pairs.h"
 #include "scene/body_particles.h"
-#include "scene/check.h"
 #include "scene/collider.h"
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"

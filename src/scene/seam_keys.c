@@ -1,7 +1,6 @@
 /* The rows of `seams`, and the checks of their sides: bodies, particles, weights, lengths. */
 #include "scene/body_keys.h"
 #include "scene/body_particles.h"
-#include "scene/check.h"
 #include "scene/collider_keys.h"
 #include "scene/table_rows.h"
 

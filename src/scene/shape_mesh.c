@@ -9,7 +9,6 @@
  * The keys of the mesh are with those of bodies, in mesh_keys.c. */
 #include "base/vec3.h"
 #include "scene/body_particles.h"
-#include "scene/check.h"
 #include "scene/collider.h"
 #include "scene/collider_keys.h"
 #include "scene/mesh_keys.h"

@@ -5,7 +5,6 @@
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
-#include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 

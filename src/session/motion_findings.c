@@ -6,7 +6,6 @@
 #include "base/vec3.h"
 #include "model/contact/posed_collider.h"
 #include "model/event/events.h"
-#include "scene/force_keys.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,7 +8,6 @@
 #include "model/force/diagnostics.h"
 #include "model/force/terms.h"
 #include "scene/body_keys.h"
-#include "scene/body_pairs.h"
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"

@@ -12,7 +12,6 @@
 #include "base/status.h"
 #include "base/text.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 
 /* Appends a field, after a comma unless it is the first of its line; the first field must not

@@ -8,7 +8,6 @@
 #include "model/system/seams.h"
 #include "scene/body_keys.h"
 #include "scene/body_particles.h"
-#include "scene/force_keys.h"
 
 #include <math.h>
 #include <stdlib.h>

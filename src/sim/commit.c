@@ -17,8 +17,6 @@
 
 #include "base/vector.h"
 #include "model/contact/bristle_law.h"
-#include "model/contact/ccd/step_limit.h"
-#include "model/post_step/contact_projection.h"
 #include "model/system/seams.h"
 #include "scene/force_keys.h"
 #include "sim/energy_ledger.h"

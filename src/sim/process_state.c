@@ -9,7 +9,6 @@
 #include <fenv.h>
 #include <locale.h>
 #include <poll.h>
-#include <stddef.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>

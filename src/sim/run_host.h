@@ -14,8 +14,6 @@
 #include "sim/process_state.h"
 #include "sim/run_state.h"
 
-#include <stdbool.h>
-#include <stdint.h>
 #include <string.h>
 
 /* Detects a blow-up: numbers that are not finite, or more kinetic energy

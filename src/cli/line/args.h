@@ -12,10 +12,6 @@
 #include "session/session.h"
 #include "session/table.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 /* One option of a command: the row of its table, and how its value is read. */
 
 /* Kinds of values. The kind follows from the C type of the field, by _Generic: a row cannot

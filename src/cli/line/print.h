@@ -6,7 +6,6 @@
 #include "base/text.h"
 
 #include <signal.h>
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 

@@ -20,8 +20,6 @@
 #include "base/status.h"
 #include "base/text.h"
 
-#include <stdint.h>
-
 /* A fact that must be the same when the record is used again, such as the scene. Compared byte
  * by byte; borrowed. */
 struct cs_checkpoint_key {

@@ -5,8 +5,6 @@
 
 #include "base/png.h"
 
-#include <stdbool.h>
-
 struct cs_frame_writer;
 
 /* Size and encoding of all pictures of a run. */

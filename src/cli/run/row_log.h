@@ -12,7 +12,6 @@
 #include "base/status.h"
 #include "base/text.h"
 
-#include <stdint.h>
 #include <stdio.h>
 
 /* Zeroed: closed. */

@@ -6,9 +6,7 @@
 #include "draw/view.h"
 
 #include <clothsim/clones.h>
-#include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
 /* Lanes: the samples of a pixel, or neighbours in a row. + - * / sqrt, comparisons and whole
  * numbers only, in one order and without contraction: the bits do not depend on the compiler or

@@ -7,14 +7,12 @@
 #include "draw/collider_mesh.h"
 #include "draw/gl/context.h"
 #include "draw/gl/gl.h"
-#include "draw/mesh.h"
 #include "draw/overlay.h"
 #include "draw/render.h"
 #include "draw/view.h"
 #include "scene/body_keys.h"
 #include "scene/picture_keys.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 

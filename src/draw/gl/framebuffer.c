@@ -1,9 +1,6 @@
 /* Draws into a multisampled texture, and reads it back sample by sample. */
 
 #include "draw/gl/gl.h"
-#include "scene/picture_keys.h"
-
-#include <stdbool.h>
 
 /* Attaches a renderbuffer to the bound frame buffer. */
 static void attach_buffer(GLenum attachment, GLenum format, const struct cs_framebuffer *target,

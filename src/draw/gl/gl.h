@@ -14,9 +14,6 @@
 #include "scene/picture_keys.h"
 
 #include <GL/glcorearb.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 /* clang-format off */
 #define CS_GL_CALLS(X)                                                                             \

@@ -1,6 +1,5 @@
 /* Draws triangles, sky and lines through OpenGL, each with its shader. */
 #include "draw/gl/gl.h"
-#include "draw/mesh.h"
 #include "draw/view.h"
 
 void cs_view_upload(struct cs_view_state *view) {

@@ -33,8 +33,6 @@
  * surface. */
 #define CS_APPROACH_MARGIN 50.0
 
-struct cs_approach;
-
 /* Builds system->approach in the system's arena, once: later calls do nothing. Bodies must have
  * their states and masses. O(particles + surfaces^2). CS_ERR_MEMORY. */
 enum cs_status cs_approach_build(struct cs_system *system, struct cs_error *error);

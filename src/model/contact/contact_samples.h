@@ -161,8 +161,6 @@ double cs_contact_sample_mass(const struct cs_system *system,
  * Arrays of points are (3, n_points of surfaces.h), those of particles (3,n). Without mesh
  * colliders both are the same array, and nothing is copied. */
 
-struct cs_points;
-
 /* Builds system->surfaces, and system->points if a collider is a mesh, unless they exist.
  * CS_ERR_MEMORY. */
 enum cs_status cs_surface_points_build(struct cs_system *system, struct cs_error *error);

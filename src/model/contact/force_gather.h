@@ -8,8 +8,6 @@
 
 #include "base/arena.h"
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* Rows of one chunk. slots is a hash table with open addressing from points to rows. */

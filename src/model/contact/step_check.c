@@ -3,9 +3,7 @@
 
 #include "base/vector.h"
 #include "model/contact/barrier_law.h"
-#include "model/contact/collider_params.h"
 #include "model/contact/contact_samples.h"
-#include "model/contact/posed_collider.h"
 #include "scene/contact_keys.h"
 #include "scene/force_keys.h"
 

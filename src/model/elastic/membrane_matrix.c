@@ -13,7 +13,6 @@
 
 #include "base/pool.h"
 #include "base/vec3.h"
-#include "scene/elastic_keys.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,6 @@
 /* Principal strains and stresses of membranes. */
 #include "model/elastic/membrane_forces.h"
 
-#include "scene/elastic_keys.h"
-
 #include <math.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 
 #include "base/pool.h"
 #include "model/system/surfaces.h"
-#include "scene/elastic_keys.h"
 
 #include <math.h>
 

@@ -14,7 +14,6 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
 /* A pass over a grid goes along all rows, each from its first spring to its last, then down:

@@ -32,10 +32,6 @@
 #include "base/arena.h"
 #include "model/solver/multigrid_hierarchy.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 /* The contact part of the solver's matrix, indexed by particle. */
 
 struct cs_pairs;

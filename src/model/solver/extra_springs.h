@@ -14,7 +14,6 @@
 
 #include "base/arena.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 
 /* Cells per block; blocks per chunk, the unit of work of one thread. */

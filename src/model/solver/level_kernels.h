@@ -5,8 +5,6 @@
 
 #include "model/solver/multigrid_hierarchy.h"
 
-#include <stdint.h>
-
 /* One loop over the cells of a level. d is the last correction, e the next one. */
 struct cs_level_loop {
     struct cs_level *level;

@@ -3,7 +3,6 @@
  *
  * Setup copies the matrix over `scale` into the first level and coarsens level by level. An
  * application scales the residual by its norm, runs the cycle and scales back:
- *
  *   (A / scale) x = r / size,   z = (size / scale) x
  * Conjugate gradients in double precision correct its rounding, up to which the cycle has to be
  * symmetric and positive definite. */

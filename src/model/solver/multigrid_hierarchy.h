@@ -33,8 +33,6 @@
 #include <clothsim/clones.h>
 #include <float.h>
 #include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
 
 /* One level of the multigrid: cells with masses, joined by springs with 3x3
  * blocks.

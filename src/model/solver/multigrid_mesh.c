@@ -9,7 +9,6 @@
 
 #include "base/pool.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 /* Edges, or ends of edges, sorted by node: those of node i are list[starts[i]..starts[i + 1]).

@@ -8,8 +8,6 @@
 #include "model/spring/springs.h"
 
 #include <clothsim/integrator.h>
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* X(name, printed text) in the order of printing. Each feature may be absent. Forces (terms.h)

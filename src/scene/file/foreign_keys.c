@@ -2,8 +2,6 @@
  */
 #include "scene/file/json_context.h"
 
-#include "base/options.h"
-
 #include <stdio.h>
 #include <string.h>
 

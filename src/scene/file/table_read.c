@@ -1,7 +1,6 @@
 /* Fills structs from JSON values by their option tables: one reader per form of value. */
 #include "scene/file/json_context.h"
 
-#include "base/options.h"
 #include "scene/scene.h"
 
 #include <stdio.h>

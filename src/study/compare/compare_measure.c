@@ -4,7 +4,6 @@
 #include "study/compare/compare_state.h"
 
 #include "session/provenance_write.h"
-#include "study/reference/compare_reference_state.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,8 +6,6 @@
 #include "base/install_paths.h"
 #include "base/json_writer.h"
 #include "session/provenance_write.h"
-#include "study/compare/compare_curves.h"
-#include "study/compare/equal_error.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -14,8 +14,6 @@ struct cs_crossing_count {
     uint32_t edge, triangle; /* the first pair by their numbers, where n > 0 */
 };
 
-struct cs_crossings;
-
 /* Builds system->crossings in the system's arena, and the surfaces if they are missing.
  * CS_ERR_MEMORY. */
 enum cs_status cs_crossings_build(struct cs_system *system, struct cs_error *error);

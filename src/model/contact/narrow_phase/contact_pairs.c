@@ -8,7 +8,6 @@
 
 #include "base/vector.h"
 #include "model/contact/contact_samples.h"
-#include "model/contact/narrow_phase/active_contacts.h"
 #include "model/contact/narrow_phase/narrow_phase.h"
 #include "model/force/terms.h"
 #include "scene/body_pairs.h"

@@ -18,7 +18,6 @@
 #include "model/contact/narrow_phase/pair_lanes.h"
 
 #include "model/contact/friction_chord.h"
-#include "scene/contact_keys.h"
 
 #include <string.h>
 

@@ -5,7 +5,6 @@
 
 #include "base/arena.h"
 #include "base/pool.h"
-#include "model/contact/narrow_phase/pair_lanes.h"
 
 #include <string.h>
 
