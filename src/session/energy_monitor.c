@@ -148,10 +148,12 @@ enum cs_status cs_energy_monitor_begin(struct cs_energy_monitor *monitor,
     if (spring_speed(run, &speed, error))
         return error->status;
     start_speeds(monitor, run);
+    const struct cs_host *host = cs_run_calls(run);
+    const bool rests =
+        cs_vec3_is_zero(run->system->scene->forces->gravity) && energy.kinetic <= 0;
+    const double c = rests ? host->length_scale : host->speed_scale;
     monitor->start_speed += speed;
-    const double *g = run->system->scene->forces->gravity, c = cs_run_calls(run)->speed_scale;
-    if (cs_vec3_length(g) > 0 || monitor->start_speed > 0)
-        monitor->least = 0.5 * LEAST_FRACTION * c * c;
+    monitor->least = 0.5 * LEAST_FRACTION * c * c;
     monitor->last_sample = run->t;
     monitor->last_total = cs_energy_total(&energy);
     memcpy(monitor->last_given, run->energy_input.given, sizeof monitor->last_given);
@@ -224,7 +226,9 @@ static double limit_of_speed(const struct cs_energy_monitor *monitor,
     const double mean = monitor->mass > 0 ? sqrt(2 * bound_of(monitor) / monitor->mass) : 0;
     const double fall =
         fmin(monitor->acceleration * (run->t - monitor->t_begin), SPEED_SPREAD * mean);
-    return SPEED_FACTOR * fmax(monitor->start_speed + fall, LEAST_SPEED);
+    /* nothing pulls: only the least energy tells a speed */
+    const double least = monitor->acceleration > 0 ? LEAST_SPEED : sqrt(2 * monitor->least);
+    return SPEED_FACTOR * fmax(monitor->start_speed + fall, least);
 }
 
 /* Stores the sample's largest extension, depth and speed, if they are larger than before;

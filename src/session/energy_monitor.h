@@ -23,15 +23,16 @@
  * no energy to compare with, but errors of steps that are allowed: dopri5 at a tolerance of
  * 1e-3 makes 0.0002 of m c^2/2 in a second on a sheet that rests on a floor, and a step of h
  * that meets the floor at its end m (g h)^2/2. An unstable step passes any such bound within
- * frames. Without gravity c is the largest speed at the start; where that is 0 too, there is no
- * such least.
+ * frames. Without gravity c is the largest speed at the start; where that is 0 too, L per
+ * second.
  *
  * W is the account of the run (run_host.h): what forces, ramps, corrections after steps and
  * events gave, each as far as it is positive between two samples.
  *
  * Local instability: a particle is faster than five times its speed at the start, what the
- * energy of its springs could give it, and a fall over the time passed, and the integrator has
- * made half of its energy: a whip is as fast, but takes its energy from the rest.
+ * energy of its springs could give it, and a fall over the time passed (without gravity and
+ * wind: five times c sqrt(0.1)), and the integrator has made half of its energy: a whip is as
+ * fast, but takes its energy from the rest.
  *
  * Beyond cloth: a run may be stable and yet show what no cloth does. Springs or membranes, but
  * no network, are more than half longer than at rest, where woven cloth tears, unless
