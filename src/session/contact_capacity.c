@@ -1,10 +1,13 @@
-/* Compares the capacity of the barrier with the energy of approach, interface by interface. */
-#include "session/session.h"
+/* Compares the capacity of the barrier with the energy of approach, interface by interface;
+ * finds ranges that are long for a body, and obstacles that are narrow for its particles. */
+#include "session/scene_findings.h"
 
+#include "base/vec3.h"
 #include "model/contact/approach.h"
 #include "model/contact/barrier_law.h"
 #include "model/contact/collider_params.h"
 #include "model/contact/narrow_phase/contact_pairs.h"
+#include "scene/body_keys.h"
 #include "scene/collider_keys.h"
 #include "scene/contact_keys.h"
 
@@ -101,6 +104,8 @@ void cs_contact_capacity_warn(const struct cs_system *system, struct cs_text *ou
 
 /* Ranges of contact per step that are reported: the step check cuts a step to about one. */
 #define RANGES_MAX 10.0
+/* Default range over the size of a body that is reported. */
+#define HOVER_MAX 0.05
 
 /* m/s with which a particle of a meets b. */
 static double approach_speed(const struct cs_system *system, uint32_t a, uint32_t b) {
@@ -138,6 +143,61 @@ void cs_contact_ranges_print(const struct cs_system *system, double dt, struct c
                 speed, speed * dt, dt, worst.range, dt / most, worst.range * most);
 }
 
+double cs_findings_spacing(const struct cs_body *body) {
+    const struct cs_cloth *cloth = &body->cloth;
+    double most = 0;
+    for (int c = 0; c < 2 && cloth->present; c++)
+        if (cloth->grid[c] > 1)
+            most = fmax(most, cloth->size[c] / (double)(cloth->grid[c] - 1));
+    return most;
+}
+
+/* m, smallest square hole that an obstacle does not pass: its second largest side. */
+static double width_of(const struct cs_posed_collider *collider) {
+    const double *h = collider->half_sizes;
+    const double second = fmax(fmin(h[0], h[1]), fmin(fmax(h[0], h[1]), h[2]));
+    return 2 * (second + collider->radius + collider->collider->thickness);
+}
+
+/* A range that a coarse body sets: it rests at about 0.8 of it. */
+static void check_hover(const struct cs_system *system, uint32_t k, const void *arg,
+                        struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    const double range = system->collider_params[k].range;
+    double low[3], high[3];
+    (void)arg;
+    const bool is_default = cs_scene_colliders(scene)[k].thickness <= 0;
+    for (uint32_t b = 0; b < scene->bodies.n && is_default; b++)
+        if (range > HOVER_MAX * cs_findings_box(system, b, low, high)) {
+            cs_text_add(
+                out,
+                "bodies[%u] may rest %.3g mm above colliders[%u], by its coarse grid or "
+                "mesh: colliders[%u].thickness %.3g makes that %.3g mm, in more steps",
+                b, 1e3 * range, k, k, range / 8, 1e3 * range / 8);
+            return;
+        }
+}
+
+void cs_contact_gaps_print(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    if (system->collider_params)
+        cs_findings_print(system, scene->colliders.n, check_hover, NULL, out);
+    for (uint32_t k = 0; k < scene->colliders.n && scene->contact->law == CS_CONTACT_PROJECT;
+         k++) {
+        struct cs_posed_collider collider;
+        double gap = 0;
+        cs_posed_collider_at(system, k, 0, &collider);
+        for (uint32_t b = 0; b < scene->bodies.n; b++)
+            gap = fmax(gap, cs_findings_spacing(cs_scene_bodies(scene) + b));
+        if (!cs_shape_is_endless(collider.shape) && width_of(&collider) < gap)
+            cs_text_add(out,
+                        "colliders[%u] is %.3g m wide, particles are %.3g m apart: contact by "
+                        "projection lets it through between them; contact.law \"force\" does "
+                        "not, nor a grid with cells below %.3g m\n",
+                        k, width_of(&collider), gap, width_of(&collider));
+    }
+}
+
 void cs_contact_note_add(const struct cs_scene *scene, const char *before,
                          struct cs_text *out) {
     if (scene->colliders.n > 0 || cs_scene_has_body_contact(scene))
@@ -145,14 +205,6 @@ void cs_contact_note_add(const struct cs_scene *scene, const char *before,
                     scene->contact->law == CS_CONTACT_FORCE
                         ? "contact is a force, in linear theory and in runs"
                         : "contact is off in linear theory; in runs it acts after each step");
-}
-
-/* True if a collider has a friction coefficient above 0. */
-static bool any_friction(const struct cs_scene *scene) {
-    for (uint32_t c = 0; c < scene->colliders.n; c++)
-        if (cs_scene_colliders(scene)[c].friction > 0)
-            return true;
-    return false;
 }
 
 /* Near rest the friction force is about mu N v / friction_speed: a damping rate of mu N / (m
@@ -182,13 +234,13 @@ void cs_contact_note_add_crossing(const struct cs_system *system, double speed,
     double stiffest = 0;
     for (uint32_t c = 0; system->collider_params && c < scene->colliders.n; c++)
         stiffest = fmax(stiffest, system->collider_params[c].k);
-    if (stiffest > 0 && any_friction(scene) &&
+    if (stiffest > 0 && cs_scene_has_friction(scene) &&
         scene->contact->friction_law == CS_FRICTION_BRISTLES)
         cs_text_add(out,
                     "friction that sticks holds a particle by %.3g N/m and %.3g N s/m, "
                     "which limits explicit steps\n",
                     stiffest, 2 * sqrt(stiffest * heaviest));
-    else if (any_friction(scene))
+    else if (cs_scene_has_friction(scene))
         cs_text_add(
             out,
             "friction under a load N damps a particle of m kg at up to mu N/(m %.3g m/s): in "

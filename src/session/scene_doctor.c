@@ -30,6 +30,8 @@
 /* kg/m2 below which a mesh of edges over 0.1 m is taken for one in other units. The lightest
  * silk has 0.01 kg/m2. */
 #define DENSITY_MIN 1e-3
+/* cm/s2 */
+#define EARTH_CM 981
 
 /* --- stored energy --- */
 
@@ -123,16 +125,20 @@ static void check_energy(const struct cs_system *system, struct cs_text *out) {
 
 /* --- springs at pins --- */
 
-/* N, sum of k L of the springs between a body's pins and its free particles. */
-static double pin_strength(const struct cs_system *system, const struct cs_body_range *range) {
-    double strength = 0;
+/* N, sum of k L of the springs between a body's pins and its free particles; or, where it hangs
+ * on obstacles, of the springs that a cut through its middle meets. */
+static double strength_of(const struct cs_system *system, uint32_t b, bool at_pins) {
+    const struct cs_body_range *range = system->bodies + b;
+    double strength = 0, low[3], high[3];
+    const double size = cs_findings_box(system, b, low, high);
     for (uint32_t r = 0; r < system->springs.n_runs; r++) {
         const struct cs_spring_run *s = system->springs.runs + r;
         for (uint32_t i = 0; i < s->count; i++) {
-            const uint32_t a = cs_spring_a(s, i), b = cs_spring_b(s, i);
-            if (a - range->first < range->count &&
-                (system->inv_mass[a] > 0) != (system->inv_mass[b] > 0))
-                strength += cs_spring_stiffness(s, i) * cs_spring_length(s, i);
+            const uint32_t one = cs_spring_a(s, i), other = cs_spring_b(s, i);
+            const double kl = cs_spring_stiffness(s, i) * cs_spring_length(s, i);
+            if (one - range->first < range->count &&
+                (!at_pins || (system->inv_mass[one] > 0) != (system->inv_mass[other] > 0)))
+                strength += at_pins ? kl : kl * cs_spring_length(s, i) / size;
         }
     }
     return strength;
@@ -158,29 +164,32 @@ static double load_of(const struct cs_system *system, const struct cs_body_range
 }
 
 /* The least strain of the springs at pins under a load F: |F| <= strain * sum of k L. Where
- * obstacles may carry a part of it nothing is said. */
+ * obstacles may carry it, the mean strain below them under the weight. */
 static void check_load(const struct cs_system *system, struct cs_text *out) {
-    static const struct {
-        const char *what, *cure[2];
-        uint32_t parts;
-    } loads[] = {
-        {"its weight", {"springs ", "as stiff, or strain_limit 1.1, keep"}, CS_PART_GRAVITY},
-        {"the wind at the start", {"a wind ", "weaker keeps"}, CS_PART_WIND}};
     const struct cs_scene *scene = system->scene;
-    if (scene->colliders.n || cs_scene_has_body_contact(scene))
-        return;
-    // each body under each load
-    for (uint32_t k = 0; k < 2 * scene->bodies.n; k++) {
-        const struct cs_body_range *range = system->bodies + k / 2;
-        const double strength = pin_strength(system, range);
-        const double load = strength > 0 ? load_of(system, range, loads[k % 2].parts) : 0;
-        if (load > STRAIN_MAX * strength && isnan(cs_scene_bodies(scene)[k / 2].strain_limit))
-            cs_text_add(out,
-                        "bodies[%u]: %s stretches the springs at its pins by at least %.3g %%: "
-                        "%s%.2g times %s it below %.3g %%\n",
-                        k / 2, loads[k % 2].what, 100 * load / strength, loads[k % 2].cure[0],
-                        load / strength / STRAIN_WANTED, loads[k % 2].cure[1],
-                        100 * STRAIN_WANTED);
+    const bool at_pins = !scene->colliders.n && !cs_scene_has_body_contact(scene);
+    const double wanted = STRAIN_WANTED / (at_pins ? 1 : 4); // impacts stretch more
+    for (uint32_t k = 0; k < (at_pins ? 2 : 1) * scene->bodies.n; k++) {
+        const uint32_t b = k % scene->bodies.n, part = k == b ? CS_PART_GRAVITY : CS_PART_WIND;
+        const struct cs_body *body = cs_scene_bodies(scene) + b;
+        const struct cs_spring_law *law = &body->springs;
+        const double strength = strength_of(system, b, at_pins);
+        const double load = strength > 0 ? load_of(system, system->bodies + b, part) : 0;
+        const double times = load / strength / wanted;
+        if (!isnan(body->strain_limit) || body->network.present ||
+            !(load > STRAIN_MAX * strength))
+            continue;
+        cs_text_add(out, "bodies[%u]: %s stretches %s %.3g %%: ", b,
+                    k == b ? "its weight" : "the wind at the start",
+                    at_pins ? "the springs at its pins by at least" : "what hangs by about",
+                    100 * load / strength);
+        if (k == b)
+            cs_text_add(out, "springs.stretch %.3g, shear %.3g and bend %.3g%s",
+                        times * law->stretch, times * law->shear, times * law->bend,
+                        at_pins ? ", or strain_limit 1.1, keep" : " keep");
+        else
+            cs_text_add(out, "a wind %.2g times weaker keeps", times);
+        cs_text_add(out, " it below %.3g %%\n", 100 * wanted);
     }
 }
 
@@ -263,42 +272,6 @@ static double step_of(const struct cs_session *session) {
     return fmin(dt, frame);
 }
 
-/* m, distance of neighbours in a grid; 0 for a mesh. */
-static double spacing_of(const struct cs_body *body) {
-    const struct cs_cloth *cloth = &body->cloth;
-    double most = 0;
-    for (int c = 0; c < 2 && cloth->present; c++)
-        if (cloth->grid[c] > 1)
-            most = fmax(most, cloth->size[c] / (double)(cloth->grid[c] - 1));
-    return most;
-}
-
-/* m, smallest square hole that an obstacle does not pass: its second largest side. */
-static double width_of(const struct cs_posed_collider *collider) {
-    const double *h = collider->half_sizes;
-    const double second = fmax(fmin(h[0], h[1]), fmin(fmax(h[0], h[1]), h[2]));
-    return 2 * (second + collider->radius + collider->collider->thickness);
-}
-
-/* Obstacles that fit between the particles: projection sees particles only. */
-static void check_gaps(const struct cs_system *system, struct cs_text *out) {
-    const struct cs_scene *scene = system->scene;
-    for (uint32_t k = 0; k < scene->colliders.n && scene->contact->law == CS_CONTACT_PROJECT;
-         k++) {
-        struct cs_posed_collider collider;
-        double gap = 0;
-        cs_posed_collider_at(system, k, 0, &collider);
-        for (uint32_t b = 0; b < scene->bodies.n; b++)
-            gap = fmax(gap, spacing_of(cs_scene_bodies(scene) + b));
-        if (!cs_shape_is_endless(collider.shape) && width_of(&collider) < gap)
-            cs_text_add(out,
-                        "colliders[%u] is %.3g m wide, particles are %.3g m apart: contact by "
-                        "projection lets it through between them; contact.law \"force\" does "
-                        "not, nor a grid with cells below %.3g m\n",
-                        k, width_of(&collider), gap, width_of(&collider));
-    }
-}
-
 /* Changes by the reading of meshes; several pieces of a mesh that nothing joins. */
 static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings *out) {
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
@@ -312,18 +285,37 @@ static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings 
         if (!(mesh->edge > 1e-6 && mesh->edge < 1e4))
             cs_text_add(&out->hints, "bodies[%u].mesh: edges of %.3g m, see units\n", b,
                         mesh->edge);
-        // sqrt(3)/4 edge^2 is the mean triangle's area, about
-        const double density = cs_scene_bodies(scene)[b].mass.total /
-                               (0.433 * mesh->n_triangles * mesh->edge * mesh->edge);
-        if (density > 0 && density < DENSITY_MIN && mesh->edge > 0.1)
-            cs_text_add(&out->hints,
-                        "bodies[%u].mesh: edges of %.3g m at %.2g kg/m2, lighter than any "
-                        "cloth: is it in centimetres? mesh.units \"cm\"\n",
-                        b, mesh->edge, density);
         if (mesh->pieces > 1 && !scene->seams.n)
             cs_text_add(&out->hints,
                         "bodies[%u].mesh.file: %s is in %u pieces that nothing joins\n", b,
                         source->file, mesh->pieces);
+    }
+}
+
+/* Lengths in centimetres: gravity tells, or a body that is lighter than any cloth. */
+static void check_units(const struct cs_system *system, struct cs_text *out) {
+    const struct cs_scene *scene = system->scene;
+    const double g = cs_vec3_length(scene->forces->gravity);
+    const bool by_gravity = fabs(g / EARTH_CM - 1) < 0.05;
+    if (by_gravity)
+        cs_text_add(out,
+                    "forces.gravity: %.4g m/s2 is the earth's in cm/s2: a scene in centimetres "
+                    "needs all lengths, and gravity, times 0.01\n",
+                    g);
+    for (uint32_t b = 0; b < scene->bodies.n && !by_gravity; b++) {
+        const struct cs_body *body = cs_scene_bodies(scene) + b;
+        const struct cs_trimesh *mesh = body->mesh.present ? body->mesh.geometry : NULL;
+        const double edge = mesh ? mesh->edge : cs_findings_spacing(body);
+        // sqrt(3)/4 edge^2 is the mean triangle's area, about
+        const double area = mesh ? 0.433 * mesh->n_triangles * edge * edge
+                                 : body->cloth.size[0] * body->cloth.size[1];
+        const double density = body->mass.total / area;
+        if (density > 0 && density < DENSITY_MIN && edge > 0.1)
+            cs_text_add(out,
+                        "bodies[%u].%s: edges of %.3g m at %.2g kg/m2, lighter than any cloth: "
+                        "is it in centimetres? %s\n",
+                        b, mesh ? "mesh" : "cloth", edge, density,
+                        mesh ? "mesh.units \"cm\"" : "cloth.size times 0.01");
     }
 }
 
@@ -360,7 +352,8 @@ enum cs_status cs_scene_doctor_check(const struct cs_session *session, double se
         return error->status;
     check_meshes(system->scene, out);
     check_energy(system, &out->warnings);
-    check_gaps(system, &out->hints);
+    check_units(system, &out->hints);
+    cs_contact_gaps_print(system, &out->hints);
     cs_contact_ranges_print(system, step_of(session), &out->hints);
     check_load(system, &out->hints);
     check_symmetry(system, &out->hints);

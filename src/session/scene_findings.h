@@ -28,6 +28,13 @@ double cs_findings_box_of(const double *x, size_t n, size_t count, double low[3]
 double cs_findings_box(const struct cs_system *system, uint32_t b, double low[3],
                        double high[3]);
 
+/* m, distance of neighbours in a grid; 0 for a mesh. */
+double cs_findings_spacing(const struct cs_body *body);
+
+/* Adds colliders above which coarse bodies hover, and those that fit between particles, which
+ * are all that projection sees. */
+void cs_contact_gaps_print(const struct cs_system *system, struct cs_text *out);
+
 /* Adds colliders that go through held particles until the last event or that many seconds. */
 void cs_motion_findings_print(const struct cs_session *session, double seconds,
                               struct cs_text *out);
