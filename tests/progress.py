@@ -17,6 +17,8 @@ import subprocess
 import sys
 import time
 
+sys.argv[1:] or sys.exit("usage: progress.py BUILD [--below S] [ARGUMENT ...]")
+
 LEAST = 1.5  # s of a test without a priority: about their mean
 LINE = re.compile(r"\s*(\d+)/(\d+) (?:.*? / )?(.+?)\s+([A-Z]{2,})\s+([\d.]+)s\b")
 PASSED = {"OK", "EXPECTEDFAIL", "SKIP"}

@@ -15,6 +15,8 @@ import subprocess
 import sys
 import tempfile
 
+sys.argv[1:] or sys.exit("usage: deeds.py PROGRAM COMMAND...")
+
 MODULE = os.environ["ABI"] + "/hostile.so"
 SCENE = {"bodies": [{"cloth": {"grid": [4, 3]}, "mass": {"total": 1}}], "time": {"fps": 50},
          "integrator": {"name": "hostile"}}

@@ -14,6 +14,8 @@ import sys
 import tempfile
 import time
 
+sys.argv[1:] or sys.exit("usage: studies.py PROGRAM CELLS")
+
 MODULE = os.environ["ABI"] + "/hostile.so"
 SCENE = {"bodies": [{"cloth": {"grid": [4, 3]}, "mass": {"total": 1}}], "time": {"fps": 50},
          "integrator": {"name": "hostile"}}

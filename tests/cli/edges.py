@@ -27,6 +27,8 @@ import time
 import tty
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: edges.py PROGRAM STEP")
+
 program = str(Path(sys.argv[1]).resolve())
 step = int(sys.argv[2])
 LIMIT = 1100  # s of a cell, which is taken for a hang: just below the limit of the whole test

@@ -19,6 +19,8 @@ import zipfile
 
 import numpy as np
 
+sys.argv[1:] or sys.exit("usage: exports.py PROGRAM")
+
 ALL = ["--export", "obj,pc2,vtp,npz", "--export-values", "force,strain"]
 
 # a sheet, a soft ball without texture coordinates, a thread, and a mesh with a seam; every kind of

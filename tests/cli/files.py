@@ -18,6 +18,8 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 
+sys.argv[1:] or sys.exit("usage: files.py PROGRAM SCENES CLOTHSIM.PY")
+
 program, scenes, module_path = (str(Path(word).resolve()) for word in sys.argv[1:])
 # keys that no run below can have: a machine with other arithmetic; more than a short test asks
 UNSEEN = {"run.json": {"contact.other_body", "error.measured", "strain_limit_missed", "energy.other", "crossings.first",

@@ -11,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 
+sys.argv[1:] or sys.exit("usage: flips.py CLOTHSIM STRIDE")
+
 SCENE = """{"bodies": [{"cloth": {"grid": [3, 3]}, "mass": {"total": 0.1}, "springs": {"stretch": 40},
  "pins": ["top"]}], "time": {"fps": 20}}"""
 COMPARE = ["compare", "a.json", "-i", "rk4:dt=5e-3", "--reference", "rk4:dt=1e-3", "--reference",

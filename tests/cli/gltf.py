@@ -14,6 +14,8 @@ import tempfile
 
 import numpy as np
 
+sys.argv[1:] or sys.exit("usage: gltf.py PROGRAM")
+
 # a cube of side 1; its lid is a primitive of its own, whose vertices stand apart
 CUBE = [(k & 1, k >> 1 & 1, k >> 2) for k in range(8)]
 SIDES = [0, 2, 3, 0, 3, 1, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5]

@@ -11,6 +11,8 @@ import sys
 import tempfile
 import time
 
+sys.argv[1:] or sys.exit("usage: growth.py PROGRAM FRAMES")
+
 SCENE = {"bodies": [{"cloth": {"grid": [2, 2]}, "mass": {"total": 1}}], "time": {"fps": 1000}}
 MOST = 1000  # kB
 count = bad = 0

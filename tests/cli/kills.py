@@ -13,6 +13,8 @@ import sys
 import tempfile
 import time
 
+sys.argv[1:] or sys.exit("usage: kills.py PROGRAM KILLS")
+
 SCENE = {
     "bodies": [{"cloth": {"grid": [12, 10], "bump": 0.01}, "mass": {"total": 1},
                 "springs": {"stretch": 60, "damping": 0.05}, "pins": ["top"]}],

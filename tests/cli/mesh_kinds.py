@@ -23,6 +23,8 @@ import tempfile
 
 import numpy as np
 
+sys.argv[1:] or sys.exit("usage: mesh_kinds.py PROGRAM")
+
 
 def obj(points, faces, form="{v}"):
     """The text of an OBJ file; corners count from 0, and form spells one."""

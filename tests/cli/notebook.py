@@ -12,6 +12,8 @@ import tempfile
 import traceback
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: notebook.py PROGRAM NOTEBOOK...")
+
 program, *notebooks = map(os.path.realpath, sys.argv[1:])
 try:
     import numpy

@@ -16,6 +16,8 @@ import sys
 import tempfile
 import time
 
+sys.argv[1:] or sys.exit("usage: programs.py PROGRAM SOURCE")
+
 program, source = (os.path.abspath(path) for path in sys.argv[1:3])
 PYTHON, EXAMPLES = sys.executable, os.path.join(source, "examples")
 SCENE = {"bodies": [{"cloth": {"grid": [5, 4], "size": [0.8, 0.6]}, "mass": {"total": 0.2},

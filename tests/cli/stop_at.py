@@ -10,6 +10,8 @@ import subprocess
 import sys
 import time
 
+sys.argv[1:] or sys.exit("usage: stop_at.py SIGNAL FILE[:BYTES] COMMAND...")
+
 
 def is_due(path, size):
     return os.path.exists(path) and os.path.getsize(path) >= size

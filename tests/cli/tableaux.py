@@ -16,6 +16,8 @@ from fractions import Fraction
 from functools import lru_cache
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: tableaux.py PROGRAM SOURCE")
+
 program, source = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 FILES = sorted((source / "examples/tableaux").glob("*.json"))
 # no method of a file needs another program

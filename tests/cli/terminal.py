@@ -22,6 +22,8 @@ from pathlib import Path
 
 import numpy as np
 
+sys.argv[1:] or sys.exit("usage: terminal.py PROGRAM [--accept]")
+
 PROGRAM = str(Path(sys.argv[1]).resolve())
 HERE = Path(__file__).resolve().parent / "terminal"
 TRUE_COLOUR, COLOURS_256, PLAIN = {"COLORTERM": "truecolor"}, {"COLORTERM": ""}, {"NO_COLOR": "1"}

@@ -15,6 +15,8 @@ import zlib
 from html.parser import HTMLParser
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: texts.py PROGRAM")
+
 PROGRAM = str(Path(sys.argv[1]).resolve())
 SHELL = "`touch PWNED`$(touch PWNED)\";system(\"touch PWNED\");#'"
 MARKUP = "<img src=x onerror=alert(1)>&amp;|*_[x](y)~"

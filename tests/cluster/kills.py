@@ -9,6 +9,8 @@ import sys
 import time
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: kills.py PROGRAM FOLDER CELLS KILLS")
+
 PROCESSES = 8
 program, folder, cells, kills = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4])
 draw = random.Random(14)

@@ -3,6 +3,8 @@
 import csv
 import sys
 
+sys.argv[1:] or sys.exit("usage: same.py SERIAL OTHER")
+
 
 def rows(path):
     with open(path, newline="") as file:

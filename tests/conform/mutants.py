@@ -21,6 +21,8 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: mutants.py CLOTHSIM ROOT [--all] [--write] [--list]")
+
 HERE = Path(__file__).resolve().parent
 TABLE = HERE / "mutants.tsv"
 FLOOR = 0.98

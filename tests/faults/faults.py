@@ -17,6 +17,8 @@ import subprocess
 import sys
 import tempfile
 
+sys.argv[1:] or sys.exit("usage: faults.py PROGRAM SHIM POINTS [WORD]")
+
 CLOTH = {"cloth": {"grid": [6, 5]}, "mass": {"total": 1}, "springs": {"stretch": 60},
          "pins": ["top"]}
 SCENE = {"bodies": [CLOTH], "colliders": [{"sphere": {"centre": [0.5, -1.6, 0.1], "radius": 0.3}}],

@@ -20,6 +20,8 @@ import subprocess
 import sys
 import tempfile
 
+sys.argv[1:] or sys.exit("usage: power.py PROGRAM STRIDE ORDERS")
+
 CLOTH = {"cloth": {"grid": [4, 3]}, "mass": {"total": 0.1}, "springs": {"stretch": 40}, "pins": ["top"]}
 SCENE = {"bodies": [CLOTH], "time": {"fps": 50}}
 METHOD = "velocity-verlet:dt=2e-3"

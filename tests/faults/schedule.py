@@ -20,6 +20,8 @@ import subprocess
 import sys
 import tempfile
 
+sys.argv[1:] or sys.exit("usage: schedule.py PROGRAM STOPS NUMBER")
+
 SCENE = {"bodies": [{"cloth": {"grid": [3, 3]}, "mass": {"total": 0.1}, "pins": ["top-left"],
                      "springs": {"stretch": 50}}], "render": {"size": [16, 16]}}
 RUN = "run s.json -q -y --renderer cpu -i rk4:dt=2e-3 --monitor w.csv"

@@ -10,6 +10,8 @@ import subprocess
 import sys
 import tempfile
 
+sys.argv[1:] or sys.exit("usage: corpus.py unpack LIST FOLDER")
+
 MOST, BYTES = 60, 400
 
 

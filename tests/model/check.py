@@ -13,6 +13,8 @@ import tempfile
 import traceback
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: check.py PROGRAM SCENE [forces]")
+
 
 def end(*what):
     """Ends with 99 for any exception: a planted fault is found by a difference and by nothing else."""

@@ -5,6 +5,8 @@ import pathlib
 import re
 import sys
 
+sys.argv[1:] or sys.exit("usage: citations.py ROOT")
+
 root = pathlib.Path(sys.argv[1])
 NAME = r"(?:Van )?[A-Z][a-zü]*'?[A-Z]?[a-zü]+"
 YEAR = r"(?:17|18|19|20)\d\d\b"

@@ -18,6 +18,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: coverage.py ROOT BUILD")
+
 FLOOR = "tests/tools/coverage_floor.txt"
 FOLDERS = ("src", "plugins", "tools")
 MARGIN = 0.2  # %, above what threads and signals change from run to run

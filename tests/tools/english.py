@@ -10,6 +10,8 @@ from pathlib import Path
 
 import sources
 
+sys.argv[1:] or sys.exit("usage: english.py ROOT")
+
 PATTERN = re.compile(r"\b(?:is\s+to\s+be|comes?\s+of|an\s+own|anew|"
                      r"what\s+(?:it|they)\s+(?:is|was|has|makes|stands))\b"
                      r"|,\s+and\s+so\b|;\s+so\b", re.I)

@@ -6,6 +6,8 @@ import re
 import sys
 from pathlib import Path
 
+sys.argv[1:] or sys.exit("usage: figures.py ROOT")
+
 root = Path(sys.argv[1])
 WORDS = dict(zip("eleven twelve thirteen fourteen fifteen sixteen seventeen eighteen nineteen twenty".split(),
                  range(11, 21)))

@@ -8,6 +8,8 @@ import pathlib
 import re
 import sys
 
+sys.argv[1:] or sys.exit("usage: links.py ROOT")
+
 root = pathlib.Path(sys.argv[1])
 LINK = re.compile(r"\]\(([^)\s]+)[^)]*\)")
 PATH = re.compile(r"`((?:src|tools|plugins|include|docs|scenes|tests|man|bench|examples|debian)/[\w./-]+)`")

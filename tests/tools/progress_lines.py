@@ -12,6 +12,8 @@ from pathlib import Path
 
 import sources
 
+sys.argv[1:] or sys.exit("usage: progress_lines.py ROOT")
+
 MESON = """#!/bin/sh
 case "$1 $4" in
     introspect*) echo '[{"name": "a", "priority": 300}, {"name": "b", "priority": 100}, {"name": "c d", "priority": 0},

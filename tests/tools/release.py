@@ -5,6 +5,8 @@ import pathlib
 import re
 import sys
 
+sys.argv[1:] or sys.exit("usage: release.py ROOT")
+
 root = pathlib.Path(sys.argv[1])
 version = re.search(r"^  version: '([\d.]+)'", (root / "meson.build").read_text(), re.M)[1]
 told = {

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import sources
 
+sys.argv[1:] or sys.exit("usage: repeats.py ROOT")
+
 WORDS, LINES = 12, 10
 
 

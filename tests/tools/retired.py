@@ -12,6 +12,8 @@ from pathlib import Path
 
 import sources
 
+sys.argv[1:] or sys.exit("usage: retired.py ROOT")
+
 HERE = Path("tests/tools")
 NAME = re.compile(r"\b(?:cs|CS)_\w+")
 DECLARED = re.compile(r"\b(?:struct|enum) (cs_\w+) (?:const )?\**(\w+)")

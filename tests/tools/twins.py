@@ -12,6 +12,8 @@ from pathlib import Path
 
 import sources
 
+sys.argv[1:] or sys.exit("usage: twins.py ROOT")
+
 LINES = 10
 
 
