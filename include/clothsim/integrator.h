@@ -282,10 +282,9 @@ struct cs_host {
     bool forces_depend_on_time;
     /* For the whole run, both above 0: the longest side l in m of the box of all particles at
      * time 0, and in m/s sqrt(g l)/pi: l over half a swing of a pendulum of that length, 1 m/s
-     * at 1 m; without gravity the largest speed at time 0, else l per second, or l per 1000 s
-     * where nothing can move the scene. An absolute
-     * tolerance that nobody set is a relative one times these. Not in older hosts: ask
-     * CS_HAS(host, speed_scale) first. */
+     * at 1 m; without gravity the largest speed at time 0, else l per second, or per 1000 s if
+     * nothing moves the scene. An absolute tolerance that nobody set is a relative one times
+     * these. Not in older hosts: ask CS_HAS(host, speed_scale) first. */
     double length_scale, speed_scale;
     /* [create, advance] s. Above 0: a step may pass t1 as with may_overstep, up to this time of
      * the next event (HUGE_VAL: there is none), and contact by force may act: ask

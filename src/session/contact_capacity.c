@@ -178,7 +178,7 @@ static void check_hover(const struct cs_system *system, uint32_t k, const void *
         }
 }
 
-void cs_contact_gaps_print(const struct cs_system *system, struct cs_text *out) {
+void cs_contact_spacing_print(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
     if (system->collider_params)
         cs_findings_print(system, scene->colliders.n, check_hover, NULL, out);

@@ -353,7 +353,7 @@ enum cs_status cs_scene_doctor_check(const struct cs_session *session, double se
     check_meshes(system->scene, out);
     check_energy(system, &out->warnings);
     check_units(system, &out->hints);
-    cs_contact_gaps_print(system, &out->hints);
+    cs_contact_spacing_print(system, &out->hints);
     cs_contact_ranges_print(system, step_of(session), &out->hints);
     check_load(system, &out->hints);
     check_symmetry(system, &out->hints);

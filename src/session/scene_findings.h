@@ -33,7 +33,7 @@ double cs_findings_spacing(const struct cs_body *body);
 
 /* Adds colliders above which coarse bodies hover, and those that fit between particles, which
  * are all that projection sees. */
-void cs_contact_gaps_print(const struct cs_system *system, struct cs_text *out);
+void cs_contact_spacing_print(const struct cs_system *system, struct cs_text *out);
 
 /* Adds colliders that go through held particles until the last event or that many seconds. */
 void cs_motion_findings_print(const struct cs_session *session, double seconds,
