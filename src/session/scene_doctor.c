@@ -25,6 +25,9 @@
  */
 #define STRAIN_MAX    0.2
 #define STRAIN_WANTED 0.1
+/* Mean static strain beside colliders that is reported: sheets of 7 m that fall on a sphere
+ * pass "beyond cloth" with 0.08, of 5 m with 0.056 not. */
+#define CARRIED_MAX 0.07
 /* Distance from a plane over the size, below which a body is flat. */
 #define FLAT 1e-12
 /* kg/m2 below which a mesh of edges over 0.1 m is taken for one in other units. The lightest
@@ -168,16 +171,16 @@ static double load_of(const struct cs_system *system, const struct cs_body_range
 static void check_load(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
     const bool at_pins = !scene->colliders.n && !cs_scene_has_body_contact(scene);
-    const double wanted = STRAIN_WANTED / (at_pins ? 1 : 4); // impacts stretch more
+    const double rest = at_pins ? 1 : 0.2; // part of the strain; impacts take the other
     for (uint32_t k = 0; k < (at_pins ? 2 : 1) * scene->bodies.n; k++) {
         const uint32_t b = k % scene->bodies.n, part = k == b ? CS_PART_GRAVITY : CS_PART_WIND;
         const struct cs_body *body = cs_scene_bodies(scene) + b;
         const struct cs_spring_law *law = &body->springs;
         const double strength = strength_of(system, b, at_pins);
         const double load = strength > 0 ? load_of(system, system->bodies + b, part) : 0;
-        const double times = load / strength / wanted;
+        const double times = load / strength / (rest * STRAIN_WANTED);
         if (!isnan(body->strain_limit) || body->network.present ||
-            !(load > STRAIN_MAX * strength))
+            !(load > (at_pins ? STRAIN_MAX : CARRIED_MAX) * strength))
             continue;
         cs_text_add(out, "bodies[%u]: %s stretches %s %.3g %%: ", b,
                     k == b ? "its weight" : "the wind at the start",
@@ -189,7 +192,7 @@ static void check_load(const struct cs_system *system, struct cs_text *out) {
                         at_pins ? ", or strain_limit 1.1, keep" : " keep");
         else
             cs_text_add(out, "a wind %.2g times weaker keeps", times);
-        cs_text_add(out, " it below %.3g %%\n", 100 * wanted);
+        cs_text_add(out, " it below %.3g %%\n", 100 * rest * STRAIN_WANTED);
     }
 }
 
@@ -287,21 +290,20 @@ static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings 
                         mesh->edge);
         if (mesh->pieces > 1 && !scene->seams.n)
             cs_text_add(&out->hints,
-                        "bodies[%u].mesh.file: %s is in %u pieces that nothing joins\n", b,
-                        source->file, mesh->pieces);
+                        "bodies[%u].mesh.file: %s is in %u pieces that nothing joins, or "
+                        "keeps apart (self_contact)\n",
+                        b, source->file, mesh->pieces);
     }
 }
 
 /* Lengths in centimetres: gravity tells, or a body that is lighter than any cloth. */
 static void check_units(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
-    const double g = cs_vec3_length(scene->forces->gravity);
-    const bool by_gravity = fabs(g / EARTH_CM - 1) < 0.05;
+    const bool by_gravity = fabs(cs_vec3_length(scene->forces->gravity) / EARTH_CM - 1) < 0.05;
     if (by_gravity)
         cs_text_add(out,
-                    "forces.gravity: %.4g m/s2 is the earth's in cm/s2: a scene in centimetres "
-                    "needs all lengths, and gravity, times 0.01\n",
-                    g);
+                    "forces.gravity: 981 m/s2 is the earth's in cm/s2: take all lengths, and "
+                    "gravity, times 0.01\n");
     for (uint32_t b = 0; b < scene->bodies.n && !by_gravity; b++) {
         const struct cs_body *body = cs_scene_bodies(scene) + b;
         const struct cs_trimesh *mesh = body->mesh.present ? body->mesh.geometry : NULL;
