@@ -162,18 +162,16 @@ static double width_of(const struct cs_posed_collider *collider) {
 /* A range that a coarse body sets: it rests at about 0.8 of it. */
 static void check_hover(const struct cs_system *system, uint32_t k, const void *arg,
                         struct cs_text *out) {
-    const struct cs_scene *scene = system->scene;
+    const struct cs_scene *scene = arg;
     const double range = system->collider_params[k].range;
     double low[3], high[3];
-    (void)arg;
     const bool is_default = cs_scene_colliders(scene)[k].thickness <= 0;
     for (uint32_t b = 0; b < scene->bodies.n && is_default; b++)
         if (range > HOVER_MAX * cs_findings_box(system, b, low, high)) {
-            cs_text_add(
-                out,
-                "bodies[%u] may rest %.3g mm above colliders[%u], by its coarse grid or "
-                "mesh: colliders[%u].thickness %.3g makes that %.3g mm, in more steps",
-                b, 1e3 * range, k, k, range / 8, 1e3 * range / 8);
+            cs_text_add(out,
+                        "bodies[%u] may rest %.3g mm above colliders[%u], by a coarse grid or "
+                        "mesh: colliders[%u].thickness %.3g makes that %.3g mm, in more steps",
+                        b, 1e3 * range, k, k, range / 8, 1e3 * range / 8);
             return;
         }
 }
@@ -181,7 +179,7 @@ static void check_hover(const struct cs_system *system, uint32_t k, const void *
 void cs_contact_spacing_print(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
     if (system->collider_params)
-        cs_findings_print(system, scene->colliders.n, check_hover, NULL, out);
+        cs_findings_print(system, scene->colliders.n, check_hover, scene, out);
     for (uint32_t k = 0; k < scene->colliders.n && scene->contact->law == CS_CONTACT_PROJECT;
          k++) {
         struct cs_posed_collider collider;

@@ -33,8 +33,9 @@
 /* kg/m2 below which a mesh of edges over 0.1 m is taken for one in other units. The lightest
  * silk has 0.01 kg/m2. */
 #define DENSITY_MIN 1e-3
-/* cm/s2 */
-#define EARTH_CM 981
+/* Shortest spring over the mean edge of a mesh that is reported: the range of contact follows
+ * the first, and its strain is the largest. */
+#define SHORT_EDGE 0.01
 
 /* --- stored energy --- */
 
@@ -276,7 +277,9 @@ static double step_of(const struct cs_session *session) {
 }
 
 /* Changes by the reading of meshes; several pieces of a mesh that nothing joins. */
-static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings *out) {
+static void check_meshes(const struct cs_system *system, struct cs_scene_findings *out) {
+    const struct cs_scene *scene = system->scene;
+    const double shortest = cs_diagnostics_shortest(system);
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         const struct cs_mesh_source *source = cs_scene_bodies(scene)[b].mesh;
         const struct cs_trimesh *mesh = cs_scene_bodies(scene)[b].geometry;
@@ -285,21 +288,23 @@ static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings 
         if (*mesh->mends)
             cs_text_add(&out->warnings, "bodies[%u].mesh.file: %s: %s\n", b, source->file,
                         mesh->mends);
-        if (!(mesh->edge > 1e-6 && mesh->edge < 1e4))
-            cs_text_add(&out->hints, "bodies[%u].mesh: edges of %.3g m, see units\n", b,
-                        mesh->edge);
+        if (!(mesh->edge > 1e-6 && mesh->edge < 1e4) ||
+            (shortest > 0 && shortest < SHORT_EDGE * mesh->edge))
+            cs_text_add(&out->hints,
+                        "bodies[%u].mesh: edges of %.3g m, springs from %.2g m on: see units, "
+                        "or merge close vertices\n",
+                        b, mesh->edge, shortest);
         if (mesh->pieces > 1 && !scene->seams.n)
             cs_text_add(&out->hints,
-                        "bodies[%u].mesh.file: %s is in %u pieces that nothing joins, or "
-                        "keeps apart (self_contact)\n",
-                        b, source->file, mesh->pieces);
+                        "bodies[%u].mesh: %u pieces that nothing joins; see self_contact\n", b,
+                        mesh->pieces);
     }
 }
 
 /* Lengths in centimetres: gravity tells, or a body that is lighter than any cloth. */
 static void check_units(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
-    const bool by_gravity = fabs(cs_vec3_length(scene->forces->gravity) / EARTH_CM - 1) < 0.05;
+    const bool by_gravity = fabs(cs_vec3_length(scene->forces->gravity) / 981 - 1) < 0.05;
     if (by_gravity)
         cs_text_add(out,
                     "forces.gravity: 981 m/s2 is the earth's in cm/s2: take all lengths, and "
@@ -352,7 +357,7 @@ enum cs_status cs_scene_doctor_check(const struct cs_session *session, double se
     *out = (struct cs_scene_findings){0};
     if (check_surfaces(system, seconds, &out->warnings, error))
         return error->status;
-    check_meshes(system->scene, out);
+    check_meshes(system, out);
     check_energy(system, &out->warnings);
     check_units(system, &out->hints);
     cs_contact_spacing_print(system, &out->hints);

@@ -309,10 +309,9 @@ static double scale_at_rest(const struct cs_run_host *host, double length) {
     const struct cs_system *system = host->run->system;
     const struct cs_energy energy =
         cs_diagnostics_energy(system, 0, system->state, host->run->v);
-    const bool rests =
-        !host->table.forces_depend_on_time && !system->scene->forces->wind.present &&
-        fabs(energy.elastic) + fabs(energy.other) < 1e-12 * host->blow_up.start_energy;
-    return rests ? 1e-3 * length : length;
+    const double least = 1e-12 * host->blow_up.start_energy;
+    const bool moves = host->table.forces_depend_on_time || system->scene->forces->wind.present;
+    return moves || fabs(energy.elastic) + fabs(energy.other) >= least ? length : 1e-3 * length;
 }
 
 /* Half a swing of a pendulum of that length tells the time, pi sqrt(l/g); without gravity the
