@@ -185,7 +185,7 @@ static const struct {
      "events[0].move.path[0] is reached", "expected at = ", 1, "events[0].move.path[0].at",
      "%g"},
     {BODY("", TOP ", \"springs\": {\"stretch\": 2, \"bend\": 0, \"shear\": 0}"),
-     "its weight stretches", ": springs ", 2, "bodies[0].springs.stretch", "%g"},
+     "its weight stretches", ": springs.stretch ", 1, "bodies[0].springs.stretch", "%g"},
     {BODY("", TOP) ", \"forces\": {\"wind\": {\"direction\": [0, 0, 1], \"strength\": 5000}}",
      "the wind at the start stretches", ": a wind ", -5000, "forces.wind.strength", "%g"},
     {BODY(FLAT ", \"stretch\": [9, 9]",
