@@ -226,15 +226,20 @@ void methods_check_mesh_orders(const char *test,
                                 .residual = 1e-12});
     double *reference = calloc(2 * n, sizeof *reference), *state = reference + n;
     ck_assert_ptr_nonnull(reference);
-    end("rk4", h_reference, reference);
+    // as with suite `orders`: a sanitizer sees each method step, and no slope is measured
+    const bool is_measured = suite_takes(0, SIZE_MAX);
+    if (is_measured)
+        end("rk4", h_reference, reference);
     for (size_t m = 0; m < methods.n; m++) {
         const struct method_asked *method = methods.list + m;
         const double h = method->order_damped == 1 ? first : higher;
         double error[2];
-        for (int k = 0; k < 2; k++) {
+        for (int k = 0; k < (is_measured ? 2 : 1); k++) {
             end(method->text, h / (1 + k), state);
             error[k] = cs_rms_difference(state, reference, n);
         }
+        if (!is_measured)
+            continue;
         const double order = log2(error[0] / error[1]);
         ck_assert_msg(fabs(order - method->order_damped) < 0.2, "%s: order %.3f (%.3g, %.3g)",
                       method->text, order, error[0], error[1]);

@@ -53,7 +53,8 @@ void methods_check_agreement(void (*end)(const char *method, const char *value, 
 
 /* Fails unless each method that is as exact in a moving frame has its own order on the mesh
  * collider of a test, to the fourth, from steps of h and h / 2 s against rk4 at h_reference; h
- * is `first` for methods of order 1, else `higher`. test: as in a query. */
+ * is `first` for methods of order 1, else `higher`. test: as in a query. A build with a
+ * sanitizer runs its part of the methods at h alone, unless SANITIZE_ALL is set. */
 void methods_check_mesh_orders(const char *test,
                                void (*end)(const char *method, double h, double *state),
                                size_t n, double h_reference, double first, double higher);
