@@ -6,8 +6,9 @@ progress with the time left. A terminal has no lines of tests that pass; a file,
 in s of what comes after these tests, SLOWER how often theirs a build with a sanitizer takes.
 
 The priority of a test is about its processor time in s (tests/meson.build): the longest start first. Tests
-that have ended tell how much longer a second of it takes here. A terminal has one line, anything else a
-line every half minute. The exit status is meson's.
+that have ended tell how much longer a second of it takes here. One test more than there are processors
+runs at a time, for some wait. A terminal has one line, anything else a line every half minute. The exit
+status is meson's.
 """
 import json
 import math
@@ -76,12 +77,12 @@ def main():
     below = math.inf
     if arguments[:1] == ["--below"]:
         below, arguments = float(arguments[1]), arguments[2:]
-    jobs = int(os.environ.get("MESON_TESTTHREADS", 0)) or len(os.sched_getaffinity(0))
+    jobs = int(os.environ.get("MESON_TESTTHREADS", 0)) or len(os.sched_getaffinity(0)) + 1
     seconds = seconds_of(build, [word for word in arguments if word != "--print-errorlogs"], below)
     progress = Progress(seconds, jobs)
     arguments += [] if math.isinf(below) else seconds
     meson = subprocess.Popen(["meson", "test", "-C", build, *arguments], stdout=subprocess.PIPE, text=True,
-                             errors="replace")
+                             errors="replace", env={**os.environ, "MESON_TESTTHREADS": str(jobs)})
     for line in meson.stdout:
         found = LINE.match(line)
         if not found or found[4] not in PASSED or not progress.terminal:

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """progress_lines.py ROOT - what tests/progress.py makes of a meson that prints known lines: in a terminal
 lines of tests that pass are left out, a file has all, the time left follows from the pace and has what comes
-later in it, only tests below a limit are asked for, and the status is meson's.
+later in it, only tests below a limit are asked for, one more runs than there are processors, and the status
+is meson's.
 """
 import os
 import pty
@@ -19,7 +20,8 @@ case "$1 $4" in
     introspect*) echo '[{"name": "a", "priority": 300}, {"name": "b", "priority": 100}, {"name": "c d", "priority": 0},
                         {"name": "other", "priority": 1000}]' ;;
     *--list*) printf 'x:cli / a\\nx:cli / b\\nx:unit / c d\\n' ;;
-    *) echo "ninja: $*"
+    *) echo "$MESON_TESTTHREADS" >"${0%/*}/jobs"
+       echo "ninja: $*"
        echo " 1/3 x:cli / b      OK               40.00s   2 subtests passed"
        echo " 2/3 x:unit / c d   FAIL              2.50s   exit status 1"
        echo "what it said"
@@ -44,8 +46,11 @@ def main():
         in_terminal = subprocess.run(line, stdout=subprocess.PIPE, stderr=terminal, text=True, env=env)
         below = subprocess.run([*line[:2], "--below", "100", *line[2:]], capture_output=True, text=True,
                                env={**env, "LATER": "1000", "SLOWER": "4"})
+        subprocess.run(line, capture_output=True, env={name: env[name] for name in env if name != "MESON_TESTTHREADS"})
+        jobs = int(Path(folder, "jobs").read_text())
         shown = [line.split()[0] for line in in_terminal.stdout.splitlines()]
         os.close(terminal), os.close(reader)
+    checks.check(jobs == len(os.sched_getaffinity(0)) + 1, f"{jobs} tests at a time")
     checks.check(ran.returncode == 3, f"exit status {ran.returncode}, expected 3")
     out = ran.stdout.splitlines()
     checks.check([line.split()[0] for line in out] == ["ninja:", "1/3", "2/3", "what", "3/3", "Ok:"], f"printed {out}")
