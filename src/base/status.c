@@ -1,7 +1,6 @@
 /* Status codes, the first message of a failure, and assertions. */
 #include "base/status.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 enum cs_status cs_fail(struct cs_error *error, enum cs_status status, const char *format, ...) {

@@ -13,7 +13,6 @@
 #include "scene/collider_keys.h"
 #include "scene/mesh_keys.h"
 
-#include <math.h>
 #include <string.h>
 
 void cs_collider_mesh_vertex(const struct cs_posed_collider *collider, uint32_t i,

@@ -311,7 +311,7 @@ static void check_units(const struct cs_system *system, struct cs_text *out) {
                     "gravity, times 0.01\n");
     for (uint32_t b = 0; b < scene->bodies.n && !by_gravity; b++) {
         const struct cs_body *body = cs_scene_bodies(scene) + b;
-        const struct cs_trimesh *mesh = body->mesh.present ? body->mesh.geometry : NULL;
+        const struct cs_trimesh *mesh = body->geometry;
         const double edge = mesh ? mesh->edge : cs_findings_spacing(body);
         // sqrt(3)/4 edge^2 is the mean triangle's area, about
         const double area = mesh ? 0.433 * mesh->n_triangles * edge * edge

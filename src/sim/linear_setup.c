@@ -29,7 +29,6 @@
 #include "scene/scene.h"
 
 #include <clothsim/clones.h>
-#include <string.h>
 
 /* m/s: friction between surfaces whose friction_speed is smaller has its chord to the end of a
  * solution. Ten sheets in a stack rest without that at the default of 1e-3, and chatter at 1e-4

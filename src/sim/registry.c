@@ -3,7 +3,6 @@
 #include "sim/registry.h"
 
 #include "base/file.h"
-#include "base/text.h"
 #include "sim/module.h"
 
 #include <dirent.h>

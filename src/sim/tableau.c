@@ -5,7 +5,6 @@
 #include "scene/table_rows.h"
 #include "sim/module.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -22,14 +22,14 @@ GROUPS = {
 # the figure, its limit, what it is
 # lowered with each thing that is made smaller
 LIMITS = (
-    ("units", "most", 292, "units in src (NAME.c, NAME.h or both)"),
-    ("headers", "most", 175, "headers in src"),
-    ("arrows", "most", 38, "arrows between rooms"),
-    ("code", "most", 60822, "lines of code in src"),
+    ("units", "most", 293, "units in src (NAME.c, NAME.h or both)"),
+    ("headers", "most", 176, "headers in src"),
+    ("arrows", "most", 37, "arrows between rooms"),
+    ("code", "most", 60891, "lines of code in src"),
     ("core", "most", 37000, "lines of code in base, mesh, scene, model and sim"),
-    ("draw", "most", 6300, "lines of code in draw"),
-    ("study", "most", 12000, "lines of code in session, export, diagram and study"),
-    ("cli", "most", 6000, "lines of code in cli"),
+    ("draw", "most", 6286, "lines of code in draw"),
+    ("study", "most", 11918, "lines of code in session, export, diagram and study"),
+    ("cli", "most", 5687, "lines of code in cli"),
     ("comments", "least", 15.0, "% of the lines of code and comment in src are comment"),
 )
 # a type that one header declares, and that alternatives define: no program sees two of them

@@ -7,7 +7,6 @@
 
 #include <clothsim/clones.h>
 #include <math.h>
-#include <string.h>
 
 /* Pose at rest, as the scene defines it. */
 static void pose(struct cs_posed_collider *out, const struct cs_collider *collider) {

@@ -7,7 +7,6 @@
 #include "model/elastic/membranes.h"
 #include "scene/elastic_keys.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Stencils per block of a loop. */

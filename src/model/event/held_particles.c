@@ -18,7 +18,6 @@
 #include "model/event/event_state.h"
 
 #include "base/vec3.h"
-#include "model/contact/posed_collider.h"
 #include "scene/body_pairs.h"
 #include "scene/check.h"
 #include "scene/collider_keys.h"

@@ -13,8 +13,6 @@
 
 #include "base/pool.h"
 
-#include <clothsim/clones.h>
-
 #include <string.h>
 
 /* Longest step of a spring along a row. As many dead cells separate two rows, for the end of

@@ -282,8 +282,8 @@ double cs_springs_shortest(const struct cs_springs *springs) {
     double shortest = springs->n_runs ? HUGE_VAL : 0;
     for (uint32_t r = 0; r < springs->n_runs; r++) {
         const struct cs_spring_run *run = springs->runs + r;
-        const uint32_t n_lengths = run->ends || run->count == 0 ? run->count : 1;
-        for (uint32_t i = 0; i < n_lengths; i++)
+        // a grid's run has one length
+        for (uint32_t i = 0; i < (run->ends ? run->count : run->count > 0); i++)
             shortest = fmin(shortest, cs_spring_length(run, i));
     }
     return shortest;

@@ -4,7 +4,6 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/serialise.h"
-#include "base/text.h"
 #include "mesh/vertex_paths.h"
 #include "scene/collider_keys.h"
 #include "scene/file/mesh_read.h"

@@ -2,7 +2,6 @@
 #include "model/contact/broad_phase/aabb_tree.h"
 
 #include <clothsim/clones.h>
-#include <math.h>
 #include <string.h>
 
 static uint32_t nodes_of(uint32_t n) {
