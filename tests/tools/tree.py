@@ -101,6 +101,7 @@ def lines(raw, bare):
 
 
 def main():
+    sys.argv[1:] or sys.exit("usage: tree.py ROOT")
     root = Path(sys.argv[1])
     raw = {path.relative_to(root): path.read_text() for path in sources.files(root)}
     # names of included files are strings: kept for the arrows

@@ -40,11 +40,11 @@ struct cs_spring_run {
     uint32_t first; /* number of the run's first spring */
     size_t factors; /* first of its numbers in the factors of the solver's matrix */
     uint32_t factor_rows, factor_stride; /* rows of numbers there, and from one to the next */
-    uint32_t n_factored; /* springs whose factors are found with it, as if they were its own */
     double stiffness;    /* N/m; with lists: the law's, N/m or N, that they were made of */
     double length;       /* rest length in m */
     double damping;      /* N s/m */
     bool axial;          /* damping along the spring only */
+    uint32_t n_factored; /* springs whose factors are found with it, as if they were its own */
 
     /* of a grid's run; columns 0 of a mesh's */
     uint32_t direction;                /* enum cs_spring_direction */
