@@ -1,8 +1,8 @@
 /* serialise.h - symmetric serialisation: the same calls write a checkpoint and read it back, so
  * the two formats cannot diverge; numbers in little-endian order for files.
  *
- * Values are bytes of this machine and build. io/checkpoint.h checks that a checkpoint fits
- * them before it is read. */
+ * Values are bytes of this machine and build: cli/run/checkpoint.h checks that a checkpoint
+ * fits them before it is read. */
 #ifndef CS_SERIALISE_H
 #define CS_SERIALISE_H
 

@@ -38,7 +38,7 @@ build() {
     [ -f "$build/build.ninja" ] || CC=${compiler%-*} meson setup "$build" $(options "$1") \
         -Dwerror=true -Doptimization="${1##*-O}" -Ddebug=false -Dsundials=disabled -Dcholmod=disabled \
         -Drender=disabled -Dman=disabled -Dtests=disabled || return 1
-    ninja -C "$build" clothsim $(ninja -C "$build" -t targets all | sed -n 's/: .*//p' |
+    ninja -C "$build" tools/clothsim-golden $(ninja -C "$build" -t targets all | sed -n 's/: .*//p' |
         grep -xE '(plugins/[^/]*|src/draw/(render-cpu|png-libpng))[.]so')
 }
 
