@@ -163,8 +163,7 @@ static double width_of(const struct cs_posed_collider *collider) {
 static void check_hover(const struct cs_system *system, uint32_t k, const void *arg,
                         struct cs_text *out) {
     const struct cs_scene *scene = arg;
-    const double range = system->collider_params[k].range;
-    double low[3], high[3];
+    double low[3], high[3], range = system->collider_params[k].range;
     const bool is_default = cs_scene_colliders(scene)[k].thickness <= 0;
     for (uint32_t b = 0; b < scene->bodies.n && is_default; b++)
         if (range > HOVER_MAX * cs_findings_box(system, b, low, high)) {

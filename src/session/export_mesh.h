@@ -56,7 +56,7 @@ enum cs_status cs_export_mesh_of_colliders(struct cs_export_mesh *mesh,
 void cs_export_mesh_pose_colliders(struct cs_export_mesh *mesh, const struct cs_system *system,
                                    double t);
 
-/* Fills uv (n) with one texture coordinate per point, if skin->uv exists: that of its first
+/* Fills uv (n) with one texture coordinate per point, if mesh->uv exists: that of its first
  * corner, which differs from the others at seams only; 0 if it has none. */
 void cs_export_mesh_point_uv(const struct cs_export_mesh *mesh, float (*uv)[2]);
 

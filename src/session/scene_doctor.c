@@ -33,8 +33,8 @@
 /* kg/m2 below which a mesh of edges over 0.1 m is taken for one in other units. The lightest
  * silk has 0.01 kg/m2. */
 #define DENSITY_MIN 1e-3
-/* Shortest spring over the mean edge of a mesh that is reported: the range of contact follows
- * the first, and its strain is the largest. */
+/* Shortest edge over the mean edge of a mesh that is reported: the range of contact follows the
+ * first, and its strain is the largest. */
 #define SHORT_EDGE 0.01
 
 /* --- stored energy --- */
@@ -183,17 +183,18 @@ static void check_load(const struct cs_system *system, struct cs_text *out) {
         if (!isnan(body->strain_limit) || body->network.present ||
             !(load > (at_pins ? STRAIN_MAX : CARRIED_MAX) * strength))
             continue;
-        cs_text_add(out, "bodies[%u]: %s stretches %s %.3g %%: ", b,
+        cs_text_add(out, "bodies[%u]: %s stretches %s %.3g %%; for %.3g %%: ", b,
                     k == b ? "its weight" : "the wind at the start",
-                    at_pins ? "the springs at its pins by at least" : "what hangs by about",
-                    100 * load / strength);
-        if (k == b)
-            cs_text_add(out, "springs.stretch %.3g, shear %.3g and bend %.3g%s",
-                        times * law->stretch, times * law->shear, times * law->bend,
-                        at_pins ? ", or strain_limit 1.1, keep" : " keep");
+                    at_pins ? "the springs at its pins by at least" : "hanging cloth by about",
+                    100 * load / strength, 100 * rest * STRAIN_WANTED);
+        if (k != b)
+            cs_text_add(out, "a wind %.2g times weaker\n", times);
+        else if (body->mesh)
+            cs_text_add(out, "springs.stretch %.3g and bend %.3g\n", times * law->stretch,
+                        times * law->bend);
         else
-            cs_text_add(out, "a wind %.2g times weaker keeps", times);
-        cs_text_add(out, " it below %.3g %%\n", 100 * rest * STRAIN_WANTED);
+            cs_text_add(out, "springs.stretch %.3g, shear %.3g and bend %.3g\n",
+                        times * law->stretch, times * law->shear, times * law->bend);
     }
 }
 
@@ -277,9 +278,7 @@ static double step_of(const struct cs_session *session) {
 }
 
 /* Changes by the reading of meshes; several pieces of a mesh that nothing joins. */
-static void check_meshes(const struct cs_system *system, struct cs_scene_findings *out) {
-    const struct cs_scene *scene = system->scene;
-    const double shortest = cs_diagnostics_shortest(system);
+static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings *out) {
     for (uint32_t b = 0; b < scene->bodies.n; b++) {
         const struct cs_mesh_source *source = cs_scene_bodies(scene)[b].mesh;
         const struct cs_trimesh *mesh = cs_scene_bodies(scene)[b].geometry;
@@ -288,10 +287,12 @@ static void check_meshes(const struct cs_system *system, struct cs_scene_finding
         if (*mesh->mends)
             cs_text_add(&out->warnings, "bodies[%u].mesh.file: %s: %s\n", b, source->file,
                         mesh->mends);
-        if (!(mesh->edge > 1e-6 && mesh->edge < 1e4) ||
-            (shortest > 0 && shortest < SHORT_EDGE * mesh->edge))
+        double shortest = HUGE_VAL;
+        for (uint32_t *e = mesh->edges; e < mesh->edges + 2 * (size_t)mesh->n_edges; e += 2)
+            shortest = fmin(shortest, sqrt(cs_trimesh_squared_distance(mesh, e[0], e[1])));
+        if (!(mesh->edge > 1e-6 && mesh->edge < 1e4 && shortest >= SHORT_EDGE * mesh->edge))
             cs_text_add(&out->hints,
-                        "bodies[%u].mesh: edges of %.3g m, springs from %.2g m on: see units, "
+                        "bodies[%u].mesh: edges of %.3g m, the shortest of %.2g m: see units, "
                         "or merge close vertices\n",
                         b, mesh->edge, shortest);
         if (mesh->pieces > 1 && !scene->seams.n)
@@ -307,8 +308,8 @@ static void check_units(const struct cs_system *system, struct cs_text *out) {
     const bool by_gravity = fabs(cs_vec3_length(scene->forces->gravity) / 981 - 1) < 0.05;
     if (by_gravity)
         cs_text_add(out,
-                    "forces.gravity: 981 m/s2 is the earth's in cm/s2: take all lengths, and "
-                    "gravity, times 0.01\n");
+                    "forces.gravity: 981 m/s2 is the earth's in cm/s2: multiply all lengths, "
+                    "and gravity, by 0.01\n");
     for (uint32_t b = 0; b < scene->bodies.n && !by_gravity; b++) {
         const struct cs_body *body = cs_scene_bodies(scene) + b;
         const struct cs_trimesh *mesh = body->geometry;
@@ -320,9 +321,9 @@ static void check_units(const struct cs_system *system, struct cs_text *out) {
         if (density > 0 && density < DENSITY_MIN && edge > 0.1)
             cs_text_add(out,
                         "bodies[%u].%s: edges of %.3g m at %.2g kg/m2, lighter than any cloth: "
-                        "is it in centimetres? %s\n",
+                        "is it in centimetres? Then %s\n",
                         b, mesh ? "mesh" : "cloth", edge, density,
-                        mesh ? "mesh.units \"cm\"" : "cloth.size times 0.01");
+                        mesh ? "set mesh.units \"cm\"" : "multiply cloth.size by 0.01");
     }
 }
 
@@ -357,7 +358,7 @@ enum cs_status cs_scene_doctor_check(const struct cs_session *session, double se
     *out = (struct cs_scene_findings){0};
     if (check_surfaces(system, seconds, &out->warnings, error))
         return error->status;
-    check_meshes(system, out);
+    check_meshes(system->scene, out);
     check_energy(system, &out->warnings);
     check_units(system, &out->hints);
     cs_contact_spacing_print(system, &out->hints);

@@ -1,5 +1,5 @@
-/* scene_findings.h - keys that a scene gives, but nothing in it reads, and mistakes in paths.
- */
+/* scene_findings.h - findings about a scene before its run: keys that nothing reads, mistakes
+ * in paths, bodies that overlap, obstacles beside coarse grids. */
 #ifndef CS_SCENE_FINDINGS_H
 #define CS_SCENE_FINDINGS_H
 

@@ -199,16 +199,16 @@ static void apply_elastic_response(struct cs_projection_energy *energy,
 }
 
 /* Applies a fraction of the displacements to the state after the step. */
-static void set_way(const struct cs_projection_energy *energy,
-                    const struct cs_projection_step *step, double fraction) {
+static void set_displacements(const struct cs_projection_energy *energy,
+                              const struct cs_projection_step *step, double fraction) {
     const size_t n3 = 3 * (size_t)energy->system->view.n;
     cs_vector_kernels.linear_sum(n3, 1, step->x, fraction, energy->work, step->corrected);
 }
 
 /* The same of the velocities that belong to them. Pushed particles have their new velocity in
  * any case. */
-static void set_speed(const struct cs_projection_energy *energy,
-                      const struct cs_projection_step *step, double fraction) {
+static void set_velocities(const struct cs_projection_energy *energy,
+                           const struct cs_projection_step *step, double fraction) {
     const size_t n = energy->system->view.n;
     const double speed = fraction * energy->velocity_per_push;
     for (size_t c = 0, k = 0; c < 3; c++)
@@ -260,11 +260,11 @@ static struct cs_energy_with_scale shorten(struct cs_projection_energy *energy,
                                            double allowed) {
     const size_t n = energy->system->view.n;
     cs_vector_kernels.linear_sum(3 * n, 1, step->corrected, -1, step->x, energy->work);
-    set_way(energy, step, 0);
-    set_speed(energy, step, 1);
+    set_displacements(energy, step, 0);
+    set_velocities(energy, step, 1);
     if (energy_after(energy, step).total > allowed)
-        bisect_fraction(energy, step, allowed, set_speed);
-    bisect_fraction(energy, step, allowed, set_way);
+        bisect_fraction(energy, step, allowed, set_velocities);
+    bisect_fraction(energy, step, allowed, set_displacements);
     lift_deep(energy, step);
     return energy_after(energy, step);
 }
