@@ -140,7 +140,7 @@ struct cs_run {
 };
 
 /* Receives each array that passes between a method and the host, and each state that a
- * correction leaves: see sim/trace.h. */
+ * correction leaves: see base/trace_stream.h. */
 struct cs_trace {
     void (*emit)(void *ctx, const struct cs_trace_record *record);
     void *ctx;

@@ -2,8 +2,8 @@
  * step, phase and particle.
  *
  * Both run as separate programs in parallel and stream their states. The first frame that
- * differs is then run once more with a full trace (sim/trace.h), of which the first difference
- * is reported: the bisection is in two levels of detail, not in time. */
+ * differs is then run once more with a full trace (base/trace_stream.h), of which the first
+ * difference is reported: the bisection is in two levels of detail, not in time. */
 #ifndef CS_BISECT_H
 #define CS_BISECT_H
 

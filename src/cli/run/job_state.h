@@ -118,7 +118,7 @@ struct cs_job {
     struct cs_text provenance;          /* see session/provenance_write.h */
     struct cs_text picture_provenance;  /* what each picture carries */
     struct cs_text renderer;            /* description; empty unless pictures are drawn */
-    char scene_hash[CS_HASH_DIGITS];    /* see scene/file/scene_hash.h */
+    char scene_hash[CS_HASH_DIGITS];    /* see scene/file/scene_read.h */
     char hash[CS_HASH_DIGITS];          /* of the last frame's state */
     struct cs_job_picture has_begun;    /* not yet written */
     uint32_t n_drawn;                   /* pictures written */
