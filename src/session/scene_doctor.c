@@ -188,7 +188,7 @@ static void check_load(const struct cs_system *system, struct cs_text *out) {
                     at_pins ? "the springs at its pins by at least" : "hanging cloth by about",
                     100 * load / strength, 100 * rest * STRAIN_WANTED);
         if (k != b)
-            cs_text_add(out, "a wind %.2g times weaker\n", times);
+            cs_text_add(out, "a wind %.2g times weaker in force\n", times);
         else if (body->mesh)
             cs_text_add(out, "springs.stretch %.3g and bend %.3g\n", times * law->stretch,
                         times * law->bend);
