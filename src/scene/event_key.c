@@ -319,7 +319,8 @@ const char *cs_viewpoint_fault(const double eye[3], const double target[3], cons
     return NULL;
 }
 
-/* Memory of a scene, and copies whose numbers change apart from it. */
+/* Memory of a scene, and copies whose numbers change apart from it. No table of the root that
+ * stands apart may be absent. */
 
 enum cs_status cs_scene_init(struct cs_scene *scene, struct cs_error *error) {
     *scene = (struct cs_scene){0};

@@ -302,14 +302,14 @@ static void check_meshes(const struct cs_scene *scene, struct cs_scene_findings 
     }
 }
 
-/* Lengths in centimetres: gravity tells, or a body that is lighter than any cloth. */
-static void check_units(const struct cs_system *system, struct cs_text *out) {
+/* Lengths in centimetres: gravity tells, or a body that is lighter than any cloth. Returns
+ * whether gravity does. */
+static bool check_units(const struct cs_system *system, struct cs_text *out) {
     const struct cs_scene *scene = system->scene;
     const bool by_gravity = fabs(cs_vec3_length(scene->forces->gravity) / 981 - 1) < 0.05;
     if (by_gravity)
         cs_text_add(out,
-                    "forces.gravity: 981 m/s2 is the earth's in cm/s2: multiply all lengths, "
-                    "and gravity, by 0.01\n");
+                    "forces.gravity: 981 is in cm/s2: multiply lengths and gravity by 0.01\n");
     for (uint32_t b = 0; b < scene->bodies.n && !by_gravity; b++) {
         const struct cs_body *body = cs_scene_bodies(scene) + b;
         const struct cs_trimesh *mesh = body->geometry;
@@ -325,6 +325,7 @@ static void check_units(const struct cs_system *system, struct cs_text *out) {
                         b, mesh ? "mesh" : "cloth", edge, density,
                         mesh ? "set mesh.units \"cm\"" : "multiply cloth.size by 0.01");
     }
+    return by_gravity;
 }
 
 /* --- all checks --- */
@@ -360,10 +361,10 @@ enum cs_status cs_scene_doctor_check(const struct cs_session *session, double se
         return error->status;
     check_meshes(system->scene, out);
     check_energy(system, &out->warnings);
-    check_units(system, &out->hints);
+    if (!check_units(system, &out->hints))
+        check_load(system, &out->hints);
     cs_contact_spacing_print(system, &out->hints);
     cs_contact_ranges_print(system, step_of(session), &out->hints);
-    check_load(system, &out->hints);
     check_symmetry(system, &out->hints);
     cs_path_findings_print(system, &out->hints);
     cs_trajectory_findings_print(session, seconds, out);
