@@ -129,8 +129,8 @@ static const struct cs_command *command_of(int argc, char **argv) {
 static enum cs_status start_program(const char *name, char **argv, struct cs_error *error) {
     char path[CS_DATA_PATH_MAX];
     execv(cs_tool_path(name, path, sizeof path), argv);
-    return cs_fail(error, CS_ERR_FILE, "%s: cannot start its program \"%.4000s\": %s%s", name,
-                   path, strerror(errno), errno == ENOENT ? " (./dev build makes all)" : "");
+    return cs_fail(error, CS_ERR_FILE, "%s: cannot start its program \"%.4000s\": %s", name,
+                   path, strerror(errno));
 }
 
 /* True for words that clothsim-describe answers. */
