@@ -168,8 +168,8 @@ static void check_hover(const struct cs_system *system, uint32_t k, const void *
     for (uint32_t b = 0; b < scene->bodies.n && is_default; b++)
         if (range > HOVER_MAX * cs_findings_box(system, b, low, high)) {
             cs_text_add(out,
-                        "bodies[%u] may rest %.3g mm above colliders[%u], as it is coarse: "
-                        "colliders[%u].thickness %.3g makes that %.3g mm, by more steps",
+                        "bodies[%u], which is coarse, may rest %.3g mm above colliders[%u]: "
+                        "colliders[%u].thickness %.3g makes that %.3g mm, with more steps",
                         b, 1e3 * range, k, k, range / 8, 1e3 * range / 8);
             return;
         }
